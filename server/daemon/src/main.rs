@@ -1,0 +1,2 @@
+//! The covr binary.
+fn main() {}

@@ -1,0 +1,45 @@
+//! What reaches the engine from outside: facts with the time at which they were true.
+
+use crate::frames::{Pose, Room};
+use crate::machine::MachineReport;
+use crate::time::Time;
+
+/// A person in this run, as the shell numbers them. Never reused within a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PersonId(pub u32);
+
+/// A headset pose, already in the room frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseSample {
+    /// When the headset was there, on the server's clock.
+    pub taken_at: Time,
+    /// Where it was.
+    pub pose: Pose<Room>,
+    /// The headset knows its place.
+    pub tracked: bool,
+    /// The headset is on a head.
+    pub worn: bool,
+}
+
+/// A fact.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Observation {
+    /// A person with a headset came into the arena.
+    PersonEntered(PersonId),
+    /// A person left the arena, said by their client.
+    PersonLeft(PersonId),
+    /// A headset pose; the newest wins.
+    Pose(PersonId, PoseSample),
+    /// The tracking origin moved: recentre, relocalisation, headset off and on (R15).
+    OriginChanged(PersonId),
+    /// The client of this person is gone without a word (R10); the person is still there.
+    ClientGone(PersonId),
+    /// The client of this person is back.
+    ClientBack(PersonId),
+    /// What the machine says, once a period.
+    Machine(MachineReport),
+    /// The control loop began a step more than one period late (R9).
+    DeadlineMissed,
+    /// The control loop began a step in time.
+    DeadlineMet,
+}

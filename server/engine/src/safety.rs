@@ -1,0 +1,5 @@
+//! The safety room: the one place that can make a command for a machine.
+//!
+//! It never imports `intention`. It is small and plain on purpose.
+
+pub mod vetted;

@@ -1,0 +1,146 @@
+//! The engine's published state: one whole value, made on demand, never patched.
+
+use crate::frames::{Floor, Planar, Pose, Room};
+use crate::mode::{Mode, RequestKind};
+use crate::observation::PersonId;
+use crate::time::Time;
+
+/// Everything that a dashboard or a client may see of the engine at one moment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Snapshot {
+    /// When it was taken.
+    pub at: Time,
+    /// The state of the machine.
+    pub mode: Mode,
+    /// Since when.
+    pub mode_since: Time,
+    /// Why the machine is stopped, in a stop.
+    pub stop: Option<StopCause>,
+    /// For each request: none if it would be accepted now, else why not.
+    pub refusals: Vec<(RequestKind, Option<String>)>,
+    /// Every safety rule, in the order of their numbers.
+    pub rules: Vec<RuleState>,
+    /// The column.
+    pub column: ColumnState,
+    /// Everybody in the arena, by id.
+    pub persons: Vec<PersonState>,
+    /// Every object of the scene, in the scene's order.
+    pub objects: Vec<ObjectState>,
+    /// The intention rule in use, by name.
+    pub intention_rule: &'static str,
+}
+
+/// A safety rule's id, R1 to R16.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RuleId(pub u8);
+
+/// What stopped the machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StopCause {
+    /// The rule.
+    pub rule: RuleId,
+    /// In plain words: what happened.
+    pub reason: String,
+    /// In plain words: what clears it.
+    pub clears_when: String,
+    /// When.
+    pub since: Time,
+}
+
+/// How a rule stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RuleStatus {
+    /// Kept, and not in the way.
+    Clear,
+    /// It shapes the motion now: slower, another way, or away.
+    Limiting,
+    /// Breached: it caused a stop or holds one.
+    Breached,
+    /// Nothing to watch now (no machine answer, nobody there).
+    Idle,
+}
+
+/// One rule now.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RuleState {
+    /// The rule.
+    pub rule: RuleId,
+    /// How it stands.
+    pub status: RuleStatus,
+    /// In plain words, with values and units.
+    pub reason: String,
+    /// Since when it has stood so.
+    pub since: Time,
+}
+
+/// The column now, room frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnState {
+    /// Measured centre.
+    pub position: Floor,
+    /// Measured velocity, m/s.
+    pub velocity: Planar,
+    /// Commanded centre.
+    pub commanded: Floor,
+    /// Commanded velocity, m/s.
+    pub commanded_velocity: Planar,
+    /// The spring-damper proxy.
+    pub proxy: Floor,
+    /// Where it is wanted (the command position); none when nobody is served.
+    pub target: Option<Floor>,
+    /// The visitor served.
+    pub serves: Option<PersonId>,
+    /// The object it is committed to, as an index into `objects`.
+    pub committed: Option<usize>,
+    /// Motor currents x, y, A.
+    pub current_amps: [f64; 2],
+    /// Positions are in the room frame.
+    pub homed: bool,
+}
+
+/// One person now, room frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PersonState {
+    /// Who.
+    pub person: PersonId,
+    /// Last known head pose; none before the first.
+    pub pose: Option<Pose<Room>>,
+    /// Age of that pose, s.
+    pub pose_age_secs: f64,
+    /// The headset knows its place and is worn.
+    pub tracked: bool,
+    /// The origin changed and nobody has confirmed the person on the floor mark (R15).
+    pub awaits_confirmation: bool,
+    /// Radius r of the separation rule for this head now, m.
+    pub separation_radius_m: f64,
+    /// Distance from the head axis to the footprint, m.
+    pub distance_m: f64,
+    /// What the separation rule asks at the present speed, m: r and what the person may walk until the column rests.
+    pub required_m: f64,
+}
+
+/// One object now.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectState {
+    /// The scene's id of the object.
+    pub id: String,
+    /// W of the rule for the served visitor, prior included.
+    pub weight: f64,
+    /// The share of the weight: the probability that the rule gives it.
+    pub probability: f64,
+    /// The prior in force.
+    pub prior: f64,
+    /// Where the column's centre must stand to serve it.
+    pub column_place: Floor,
+    /// When the column could be there at its limits, s from now.
+    pub arrival_secs: f64,
+    /// When the visitor's head could be within reach of it at their present pace, s from now; none without a visitor.
+    pub touch_secs: Option<f64>,
+}
+
+impl RuleId {
+    /// Its number as people write it.
+    pub fn name(self) -> String {
+        format!("R{}", self.0)
+    }
+}

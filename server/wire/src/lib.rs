@@ -1,0 +1,4 @@
+//! covr-wire: the messages of clients and dashboards, scenes as serialised, frame conversion. Pure.
+
+pub mod dashboard;
+pub mod scene;
