@@ -2,174 +2,293 @@
 //!
 //! A scene is right once built. parry stays inside this room.
 
-use crate::frames::{Floor, Planar, Point, Room};
+pub mod footprint;
+pub mod spec;
+mod surface;
+
+use std::collections::HashMap;
+
+use crate::frames::{Floor, Planar, Point, Pose, Room};
 use crate::machine::Travel;
-
-/// A scene as described, not yet checked. Lengths in metres, angles in radians, room frame.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SceneSpec {
-    /// Where persons may be.
-    pub arena: Travel,
-    /// Column size along x and y, about its centre.
-    pub column_size_m: Planar,
-    /// What hangs on the column.
-    pub props: Vec<PropSpec>,
-    /// The virtual objects of interest.
-    pub objects: Vec<ObjectSpec>,
-    /// Where the column must never go.
-    pub keep_outs: Vec<KeepOutSpec>,
-}
-
-/// A prop.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PropSpec {
-    /// Unique in the scene.
-    pub id: String,
-    /// From the column's centre to the point of touch.
-    pub offset: Planar,
-    /// Heading that it faces.
-    pub facing_rad: f64,
-    /// The floor rectangle that it takes about its offset; zero: inside the column.
-    pub size_m: Planar,
-}
-
-/// An object of interest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ObjectSpec {
-    /// Unique in the scene.
-    pub id: String,
-    /// Its centre.
-    pub position: Point<Room>,
-    /// Heading of its own +x axis.
-    pub yaw_rad: f64,
-    /// Its surface.
-    pub shape: Shape,
-    /// The prop that stands in for it, as an index; none: the column's centre.
-    pub prop: Option<usize>,
-    /// The scenario prior, 0 to 1.
-    pub prior: f64,
-    /// It can be served now.
-    pub enabled: bool,
-}
-
-/// A surface about an object's centre, in the object's own axes.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
-    /// A ball.
-    Sphere {
-        /// Radius.
-        radius_m: f64,
-    },
-    /// A box.
-    Box {
-        /// Full size.
-        size_m: [f64; 3],
-    },
-    /// An upright cylinder.
-    Cylinder {
-        /// Radius.
-        radius_m: f64,
-        /// Height.
-        height_m: f64,
-    },
-    /// The convex hull of points.
-    ConvexMesh {
-        /// Points.
-        points_m: Vec<[f64; 3]>,
-    },
-    /// Triangles.
-    TriangleMesh {
-        /// Corners.
-        vertices_m: Vec<[f64; 3]>,
-        /// Indices of corners.
-        triangles: Vec<[u32; 3]>,
-    },
-}
-
-/// Where the column must never go.
-#[derive(Debug, Clone, PartialEq)]
-pub struct KeepOutSpec {
-    /// Unique in the scene.
-    pub id: String,
-    /// Its shape on the floor.
-    pub shape: KeepOutShape,
-}
-
-/// A shape on the floor.
-#[derive(Debug, Clone, PartialEq)]
-pub enum KeepOutShape {
-    /// A disc.
-    Circle {
-        /// Centre.
-        centre: Floor,
-        /// Radius.
-        radius_m: f64,
-    },
-    /// A convex polygon.
-    Polygon {
-        /// Corners in order, either way round.
-        corners: Vec<Floor>,
-    },
-}
-
-/// What is wrong with a scene, and where.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{part}: found {found}, expected {expected}")]
-pub struct SceneProblem {
-    /// The part.
-    pub part: ScenePart,
-    /// The key inside the part, as in the JSON: `position`, `shape.radius`, or empty for the part itself.
-    pub key: String,
-    /// What was found.
-    pub found: String,
-    /// What was expected.
-    pub expected: String,
-}
-
-/// A part of a scene, by index.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ScenePart {
-    /// The scene as a whole.
-    Scene,
-    /// The arena.
-    Arena,
-    /// The column.
-    Column,
-    /// A prop.
-    Prop(usize),
-    /// An object.
-    Object(usize),
-    /// A keep-out shape.
-    KeepOut(usize),
-}
+use footprint::{Footprint, KeepOut};
+pub use spec::{KeepOutShape, KeepOutSpec, ObjectSpec, PropSpec, ScenePart, SceneProblem, SceneSpec, Shape};
+use surface::Surface;
 
 /// A scene, right once built.
 #[derive(Debug)]
 pub struct Scene {
     spec: SceneSpec,
+    objects: Vec<Object>,
+    footprint: Footprint,
+    keep_outs: Vec<KeepOut>,
+}
+
+/// An object of interest with its surface.
+#[derive(Debug)]
+pub struct Object {
+    surface: Surface,
+    column_place: Floor,
 }
 
 impl Scene {
     /// Check and build; every problem is reported, not the first alone.
     pub fn build(spec: SceneSpec) -> Result<Self, Vec<SceneProblem>> {
-        Ok(Self { spec })
+        let mut problems = Vec::new();
+        check_rectangle(ScenePart::Arena, "max", spec.arena.max - spec.arena.min, 0.5, 100.0, &mut problems);
+        check_rectangle(ScenePart::Column, "size", spec.column_size_m, 0.01, 2.0, &mut problems);
+        for (i, prop) in spec.props.iter().enumerate() {
+            check_prop(ScenePart::Prop(i), prop, &mut problems);
+        }
+        let mut objects = Vec::with_capacity(spec.objects.len());
+        for (i, object) in spec.objects.iter().enumerate() {
+            objects.extend(build_object(i, object, &spec, &mut problems));
+        }
+        for (i, keep_out) in spec.keep_outs.iter().enumerate() {
+            check_keep_out(ScenePart::KeepOut(i), &keep_out.shape, &mut problems);
+        }
+        if !(1..=MOST_OBJECTS).contains(&spec.objects.len()) {
+            let found = format!("{} objects", spec.objects.len());
+            problems.push(problem(
+                ScenePart::Scene,
+                "objects",
+                found,
+                format!("1 to {MOST_OBJECTS} objects"),
+            ));
+        }
+        check_ids(&spec, &mut problems);
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        let footprint = Footprint::new(spec.column_size_m, &spec.props);
+        let keep_outs = spec.keep_outs.iter().map(|k| KeepOut::new(&k.shape, &footprint)).collect();
+        Ok(Self { spec, objects, footprint, keep_outs })
     }
 
     /// What it was built from.
     pub fn spec(&self) -> &SceneSpec {
         &self.spec
     }
+
+    /// The objects, in the scene's order.
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// The column seen from above, props included.
+    pub fn footprint(&self) -> &Footprint {
+        &self.footprint
+    }
+
+    /// Where the column must never go.
+    pub fn keep_outs(&self) -> &[KeepOut] {
+        &self.keep_outs
+    }
+
+    /// From a head to the nearest surface of any enabled object, m; infinite without one.
+    pub fn nearest_enabled_object_m(&self, head: &Point<Room>) -> f64 {
+        let enabled = self.objects.iter().zip(&self.spec.objects).filter(|(_, spec)| spec.enabled);
+        enabled.map(|(object, _)| object.distance_m(head)).fold(f64::INFINITY, f64::min)
+    }
 }
 
-impl std::fmt::Display for ScenePart {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Scene => write!(f, "scene"),
-            Self::Arena => write!(f, "arena"),
-            Self::Column => write!(f, "column"),
-            Self::Prop(i) => write!(f, "props[{i}]"),
-            Self::Object(i) => write!(f, "objects[{i}]"),
-            Self::KeepOut(i) => write!(f, "keep_outs[{i}]"),
+impl Object {
+    /// Where the column's centre must stand so that the object's prop stands at the object.
+    pub fn column_place(&self) -> Floor {
+        self.column_place
+    }
+
+    /// From the head to the nearest surface point, m; 0 inside.
+    pub fn distance_m(&self, head: &Point<Room>) -> f64 {
+        self.surface.distance_m(head)
+    }
+
+    /// Angle between the view axis and the object, rad; 0 when the view ray hits its surface.
+    pub fn angle_rad(&self, head: &Pose<Room>) -> f64 {
+        self.surface.angle_rad(head)
+    }
+}
+
+fn build_object(
+    i: usize,
+    object: &ObjectSpec,
+    spec: &SceneSpec,
+    problems: &mut Vec<SceneProblem>,
+) -> Option<Object> {
+    let part = ScenePart::Object(i);
+    let before = problems.len();
+    let position = object.position;
+    if !(position.floor().is_finite() && position.z().is_finite() && object.yaw_rad.is_finite()) {
+        problems.push(problem(
+            part,
+            "position",
+            "a coordinate that is not finite".into(),
+            "finite metres".into(),
+        ));
+    } else if spec.arena.depth_m(position.floor()) < 0.0 {
+        let found = format!("({}, {}) m, outside the arena", position.x(), position.y());
+        problems.push(problem(part, "position", found, "a place inside the arena".into()));
+    } else if !(-1.0..=5.0).contains(&position.z()) {
+        problems.push(problem(part, "position", format!("height {} m", position.z()), "-1 to 5 m".into()));
+    }
+    if !(0.0..=1.0).contains(&object.prior) {
+        problems.push(problem(part, "prior", format!("{}", object.prior), "a number from 0 to 1".into()));
+    }
+    let offset = match object.prop.map(|prop| spec.props.get(prop)) {
+        None => Planar::ZERO,
+        Some(Some(prop)) => prop.offset,
+        Some(None) => {
+            problems.push(problem(
+                part,
+                "prop",
+                "no such prop".into(),
+                "the id of a prop of this scene".into(),
+            ));
+            Planar::ZERO
         }
+    };
+    let column_place = position.floor() - offset;
+    let surface = Surface::build(object)
+        .map_err(|(key, found, expected)| problems.push(problem(part, key, found, expected)))
+        .ok()?;
+    (problems.len() == before).then_some(Object { surface, column_place })
+}
+
+fn check_prop(part: ScenePart, prop: &PropSpec, problems: &mut Vec<SceneProblem>) {
+    let near = |v: Planar, most: f64| v.x.is_finite() && v.y.is_finite() && v.norm() <= most;
+    if !near(prop.offset, 2.0) {
+        let found = format!("[{}, {}]", prop.offset.x, prop.offset.y);
+        problems.push(problem(part, "offset", found, "at most 2 m from the column's centre".into()));
+    }
+    if !near(prop.size_m, 3.0) || prop.size_m.x < 0.0 || prop.size_m.y < 0.0 {
+        let found = format!("[{}, {}]", prop.size_m.x, prop.size_m.y);
+        problems.push(problem(part, "size", found, "two lengths from 0 to 3 m".into()));
+    }
+    if !prop.facing_rad.is_finite() {
+        problems.push(problem(part, "facing", format!("{}", prop.facing_rad), "a finite heading".into()));
+    }
+}
+
+fn check_keep_out(part: ScenePart, shape: &KeepOutShape, problems: &mut Vec<SceneProblem>) {
+    match shape {
+        KeepOutShape::Circle { centre, radius_m } => {
+            if !centre.is_finite() {
+                problems.push(problem(part, "shape.centre", "not finite".into(), "finite metres".into()));
+            }
+            if !(radius_m.is_finite() && (0.01..=50.0).contains(radius_m)) {
+                problems.push(problem(part, "shape.radius", format!("{radius_m}"), "0.01 to 50 m".into()));
+            }
+        }
+        KeepOutShape::Polygon { corners } => {
+            if !(3..=32).contains(&corners.len()) {
+                let found = format!("{} corners", corners.len());
+                problems.push(problem(part, "shape.corners", found, "3 to 32 corners".into()));
+            } else if corners.iter().any(|c| !c.is_finite()) || !footprint::is_convex(corners) {
+                let found = "corners that are not convex".to_owned();
+                problems.push(problem(part, "shape.corners", found, "a convex polygon, in order".into()));
+            }
+        }
+    }
+}
+
+fn check_rectangle(
+    part: ScenePart,
+    key: &str,
+    size: Planar,
+    least: f64,
+    most: f64,
+    problems: &mut Vec<SceneProblem>,
+) {
+    let fits = |v: f64| v.is_finite() && (least..=most).contains(&v);
+    if !(fits(size.x) && fits(size.y)) {
+        let found = format!("{} x {} m", size.x, size.y);
+        problems.push(problem(part, key, found, format!("{least} to {most} m along x and y")));
+    }
+}
+
+fn check_ids(spec: &SceneSpec, problems: &mut Vec<SceneProblem>) {
+    let groups: [Vec<(ScenePart, &str)>; 3] = [
+        spec.props.iter().enumerate().map(|(i, p)| (ScenePart::Prop(i), p.id.as_str())).collect(),
+        spec.objects.iter().enumerate().map(|(i, o)| (ScenePart::Object(i), o.id.as_str())).collect(),
+        spec.keep_outs.iter().enumerate().map(|(i, k)| (ScenePart::KeepOut(i), k.id.as_str())).collect(),
+    ];
+    for group in groups {
+        let mut seen = HashMap::new();
+        for (part, id) in group {
+            if id.is_empty() || id.chars().count() > 64 {
+                let found = format!("{} characters", id.chars().count());
+                problems.push(problem(part, "id", found, "1 to 64 characters".into()));
+            }
+            if let Some(first) = seen.insert(id, part) {
+                let found = format!("\"{id}\", already the id of {first}");
+                problems.push(problem(part, "id", found, "an id of its own".into()));
+            }
+        }
+    }
+}
+
+fn problem(part: ScenePart, key: &str, found: String, expected: String) -> SceneProblem {
+    SceneProblem { part, key: key.to_owned(), found, expected }
+}
+
+const MOST_OBJECTS: usize = 500;
+
+impl SceneSpec {
+    /// An arena without props or keep-outs and with the paper's 15 cm column: where replays and tests begin.
+    pub fn open(arena: Travel, objects: Vec<ObjectSpec>) -> Self {
+        Self {
+            arena,
+            column_size_m: Planar::new(0.15, 0.15),
+            props: Vec::new(),
+            objects,
+            keep_outs: Vec::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ball(id: &str, x: f64, y: f64) -> ObjectSpec {
+        ObjectSpec {
+            id: id.into(),
+            position: Point::new(x, y, 1.0),
+            yaw_rad: 0.0,
+            shape: Shape::Sphere { radius_m: 0.1 },
+            prop: None,
+            prior: 1.0,
+            enabled: true,
+        }
+    }
+
+    fn arena() -> Travel {
+        Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) }
+    }
+
+    #[test]
+    fn the_column_stands_back_by_the_props_offset() {
+        let mut spec = SceneSpec::open(arena(), vec![ball("a", 1.0, 2.0)]);
+        spec.props.push(PropSpec {
+            id: "chair".into(),
+            offset: Planar::new(0.4, -0.1),
+            facing_rad: 0.0,
+            size_m: Planar::ZERO,
+        });
+        spec.objects[0].prop = Some(0);
+        let scene = Scene::build(spec).unwrap();
+        assert!(scene.objects()[0].column_place().distance_m(Floor::new(0.6, 2.1)) < 1e-12);
+    }
+
+    #[test]
+    fn every_problem_is_reported_with_its_part() {
+        let mut spec = SceneSpec::open(arena(), vec![ball("a", 1.0, 2.0), ball("a", 9.0, 2.0)]);
+        spec.objects[0].prior = 1.5;
+        spec.keep_outs.push(KeepOutSpec { id: "k".into(), shape: KeepOutShape::Polygon { corners: vec![] } });
+        let problems = Scene::build(spec).unwrap_err();
+        let found: Vec<String> = problems.iter().map(|p| format!("{}.{}", p.part, p.key)).collect();
+        assert_eq!(
+            found,
+            ["objects[0].prior", "objects[1].position", "keep_outs[0].shape.corners", "objects[1].id",]
+        );
     }
 }
