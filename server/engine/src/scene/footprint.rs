@@ -120,13 +120,12 @@ pub fn is_convex(corners: &[Floor]) -> bool {
     let n = corners.len();
     let turn = |i: usize| {
         let (a, b, c) = (corners[i], corners[(i + 1) % n], corners[(i + 2) % n]);
-        (b - a).cross(c - b)
+        (b - a).cross(c - b).atan2((b - a).dot(c - b))
     };
     let turns: Vec<f64> = (0..n).map(turn).collect();
-    let one_way = turns.iter().all(|t| *t > 1e-12) || turns.iter().all(|t| *t < -1e-12);
-    // One way all along, and once round: a star turns one way too.
-    let hull = if one_way { convex_hull(corners.to_vec()) } else { Vec::new() };
-    one_way && hull.len() == n
+    let one_way = turns.iter().all(|t| *t > 1e-9) || turns.iter().all(|t| *t < -1e-9);
+    // One way all along, and once round: a star turns one way too, but twice round.
+    one_way && (turns.iter().sum::<f64>().abs() - std::f64::consts::TAU).abs() < 1e-6
 }
 
 /// From the nearest point of a convex counter-clockwise polygon to `point`; zero inside.

@@ -55,7 +55,8 @@ impl Surface {
     /// From the head to the nearest surface point, m; 0 inside.
     pub fn distance_m(&self, head: &Point<Room>) -> f64 {
         let local = self.local(head.vector() - self.centre.vector());
-        self.shape.distance_to_local_point(local, true).max(0.0)
+        let nearest = self.shape.project_local_point(local, true);
+        if nearest.is_inside { 0.0 } else { nearest.point.distance(local) }
     }
 
     /// Angle between the view axis and the object, rad: 0 when the view ray hits any surface point, else to its centre.
