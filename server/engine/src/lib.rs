@@ -11,6 +11,7 @@ pub mod frames;
 pub mod machine;
 pub mod mode;
 pub mod observation;
+pub mod person;
 pub mod safety;
 pub mod scene;
 pub mod snapshot;

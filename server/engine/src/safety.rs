@@ -2,4 +2,7 @@
 //!
 //! It never imports `intention`. It is small and plain on purpose.
 
+pub mod parameters;
+pub mod path;
+pub mod separation;
 pub mod vetted;

@@ -1,0 +1,91 @@
+//! The numbers of the safety rules, in one place, each with the rule that it belongs to.
+
+use crate::time::Span;
+
+/// The parameters of R1 to R16. Defaults are those of the safety design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameters {
+    /// R1: the column's centre, braking included, stays this far inside the travel, m.
+    pub travel_margin_m: f64,
+    /// R2: greatest age of a pose, on the server's clock.
+    pub pose_age: Span,
+    /// R3: a walking person's greatest speed, m/s (ISO 13855, ISO 10218-2).
+    pub v_h_mps: f64,
+    /// R3: a body of 0.25 m and a margin, m.
+    pub radius_m: f64,
+    /// R3: near an enabled object, at creeping speed alone, m.
+    pub near_radius_m: f64,
+    /// R3: greatest speed with the near radius, m/s; commanded a little less than the rule's 0.25.
+    pub near_speed_mps: f64,
+    /// R3: a head nearer than this to an enabled object is near, m; half of the hysteresis.
+    pub near_enter_m: f64,
+    /// R3: it is near until it is farther than this, m.
+    pub near_leave_m: f64,
+    /// R3: a person who crawls or sits, m.
+    pub low_radius_m: f64,
+    /// R3: a head below this is low, m.
+    pub low_head_m: f64,
+    /// R3: from a decision to its effect on the machine, T_r.
+    pub reaction: Span,
+    /// R3: speed of a retreat, m/s; the rule's 0.3 less what a machine may overshoot.
+    pub retreat_speed_mps: f64,
+    /// R3: half the cone of a retreat about "directly away"; the rule's 60 degrees less a margin, rad.
+    pub retreat_cone_rad: f64,
+    /// R3: what the commanded path keeps beyond the rule, for the following error of a healthy machine, m.
+    pub following_allowance_m: f64,
+    /// R5: greatest motor current, A.
+    pub current_amps: f64,
+    /// R5: for so long.
+    pub current_for: Span,
+    /// R6: greatest following error, m.
+    pub following_error_m: f64,
+    /// R6: for so long.
+    pub following_error_for: Span,
+    /// R7: greatest difference between commanded and measured velocity, m/s.
+    pub velocity_error_mps: f64,
+    /// R7: for so long.
+    pub velocity_error_for: Span,
+    /// R7: faster than this no head moves, m/s.
+    pub head_speed_mps: f64,
+    /// R8: the controller's last good answer is not older.
+    pub link: Span,
+    /// R9: so many missed deadlines in a row.
+    pub missed_deadlines: u32,
+    /// A protective stop clears when its cause has been gone for so long.
+    pub clears_after: Span,
+    /// R16 and homing: creep speed, m/s.
+    pub creep_speed_mps: f64,
+}
+
+impl Parameters {
+    /// The defaults of the safety design with this v_h.
+    pub fn new(v_h_mps: f64) -> Self {
+        Self {
+            travel_margin_m: 0.02,
+            pose_age: Span::from_millis(500),
+            v_h_mps,
+            radius_m: 0.35,
+            near_radius_m: 0.25,
+            near_speed_mps: 0.22,
+            near_enter_m: 0.75,
+            near_leave_m: 0.85,
+            low_radius_m: 1.0,
+            low_head_m: 1.0,
+            reaction: Span::from_millis(50),
+            retreat_speed_mps: 0.25,
+            retreat_cone_rad: 50.0_f64.to_radians(),
+            following_allowance_m: 0.015,
+            current_amps: 5.0,
+            current_for: Span::from_millis(20),
+            following_error_m: 0.05,
+            following_error_for: Span::from_millis(100),
+            velocity_error_mps: 0.35,
+            velocity_error_for: Span::from_millis(100),
+            head_speed_mps: 6.0,
+            link: Span::from_millis(100),
+            missed_deadlines: 3,
+            clears_after: Span::from_millis(1000),
+            creep_speed_mps: 0.1,
+        }
+    }
+}

@@ -1,0 +1,306 @@
+//! Jerk-limited velocity changes of one axis, in closed form: the brake, and the limiter's next step.
+//!
+//! From (v, a) to (v_target, 0) in least time with |jerk| <= J and a bound on acceleration: ramp to a peak, hold it,
+//! ramp to zero. The peak follows from the wanted change of velocity (the usual three-phase profile; compare Kröger,
+//! "On-Line Trajectory Generation in Robotic Systems", 2010).
+
+use crate::frames::{Floor, Planar};
+use crate::machine::{AxisLimits, Limits};
+
+/// One axis at one moment: m, m/s, m/s2.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AxisState {
+    /// Position, m.
+    pub p: f64,
+    /// Velocity, m/s.
+    pub v: f64,
+    /// Acceleration, m/s2.
+    pub a: f64,
+}
+
+/// Both axes at one moment.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct State {
+    /// The long rail.
+    pub x: AxisState,
+    /// The cross rail.
+    pub y: AxisState,
+}
+
+/// How one axis moves for a while: pieces of constant jerk, then at rest or at constant velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisPath {
+    pieces: [Piece; 4],
+    end: AxisState,
+    duration_secs: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Piece {
+    start: AxisState,
+    jerk: f64,
+    from_secs: f64,
+}
+
+/// How the column moves when it is told to brake: the worst of it, reaction included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BrakePath {
+    x: AxisPath,
+    y: AxisPath,
+}
+
+impl AxisState {
+    fn after(self, jerk: f64, t: f64) -> Self {
+        Self {
+            p: self.p + t * (self.v + t * (0.5 * self.a + t * jerk / 6.0)),
+            v: self.v + t * (self.a + 0.5 * t * jerk),
+            a: self.a + t * jerk,
+        }
+    }
+}
+
+impl State {
+    /// At rest at a place.
+    pub fn at_rest(place: Floor) -> Self {
+        let axis = |p| AxisState { p, v: 0.0, a: 0.0 };
+        Self { x: axis(place.x), y: axis(place.y) }
+    }
+
+    /// Moving uniformly.
+    pub fn moving(place: Floor, velocity: Planar) -> Self {
+        let axis = |p, v| AxisState { p, v, a: 0.0 };
+        Self { x: axis(place.x, velocity.x), y: axis(place.y, velocity.y) }
+    }
+
+    /// Position.
+    pub fn position(&self) -> Floor {
+        Floor::new(self.x.p, self.y.p)
+    }
+
+    /// Velocity, m/s.
+    pub fn velocity(&self) -> Planar {
+        Planar::new(self.x.v, self.y.v)
+    }
+
+    /// Acceleration, m/s2.
+    pub fn acceleration(&self) -> Planar {
+        Planar::new(self.x.a, self.y.a)
+    }
+}
+
+impl AxisPath {
+    /// To `v_target` and no acceleration, in least time within the limits.
+    pub fn to_velocity(start: AxisState, v_target: f64, limits: &AxisLimits) -> Self {
+        let slows = start.v * (v_target - start.v) < 0.0 && start.v * v_target >= 0.0;
+        let most = if slows { limits.braking_mps2 } else { limits.acceleration_mps2 };
+        Self::build(start, None, v_target, most, limits.jerk_mps3)
+    }
+
+    /// To rest as fast as the axis may.
+    pub fn brake(start: AxisState, limits: &AxisLimits) -> Self {
+        Self::build(start, None, 0.0, limits.braking_mps2, limits.jerk_mps3)
+    }
+
+    /// The brake of an axis that, for `reaction_secs` more, accelerates as hard as it may in its direction.
+    pub fn worst_brake(start: AxisState, limits: &AxisLimits, reaction_secs: f64) -> Self {
+        let heading = if start.v.abs() > STILL_MPS { start.v } else { start.a };
+        let room = ((limits.speed_mps - start.v.abs()) / reaction_secs).max(0.0);
+        let push = if heading == 0.0 { 0.0 } else { limits.acceleration_mps2.min(room).copysign(heading) };
+        Self::build(
+            AxisState { a: push, ..start },
+            Some(reaction_secs),
+            0.0,
+            limits.braking_mps2,
+            limits.jerk_mps3,
+        )
+    }
+
+    fn build(start: AxisState, reaction_secs: Option<f64>, v_target: f64, most: f64, jerk: f64) -> Self {
+        let mut path =
+            Self { pieces: [Piece { start, ..Piece::default() }; 4], end: start, duration_secs: 0.0 };
+        let mut index = 0;
+        if let Some(secs) = reaction_secs {
+            path.push(&mut index, 0.0, secs);
+        }
+        let AxisState { v, a, .. } = path.end;
+        // Where the velocity would end if the acceleration ramped to zero from here.
+        let v_ramped_out = v + a * a.abs() / (2.0 * jerk);
+        let way = if v_target >= v_ramped_out { 1.0 } else { -1.0 };
+        let (a, dv) = (a * way, (v_target - v) * way);
+        let unbounded = (jerk * dv + 0.5 * a * a).max(0.0).sqrt();
+        let peak = unbounded.min(most);
+        let ramp_in = (peak - a).abs() / jerk;
+        let ramp_out = peak / jerk;
+        let hold = if unbounded > most {
+            ((dv - 0.5 * (a + peak) * ramp_in - 0.5 * peak * ramp_out) / peak).max(0.0)
+        } else {
+            0.0
+        };
+        path.push(&mut index, (peak - a).signum() * way * jerk, ramp_in);
+        path.push(&mut index, 0.0, hold);
+        path.push(&mut index, -way * jerk, ramp_out);
+        path.end.v = v_target;
+        path.end.a = 0.0;
+        path
+    }
+
+    fn push(&mut self, index: &mut usize, jerk: f64, secs: f64) {
+        self.pieces[*index..].fill(Piece { start: self.end, jerk, from_secs: self.duration_secs });
+        *index += 1;
+        self.end = self.end.after(jerk, secs);
+        self.duration_secs += secs;
+    }
+
+    /// The state `t` seconds from the start.
+    pub fn at(&self, t: f64) -> AxisState {
+        if t >= self.duration_secs {
+            return AxisState { p: self.end.p + self.end.v * (t - self.duration_secs), ..self.end };
+        }
+        let piece = self.pieces.iter().rev().find(|piece| piece.from_secs <= t).unwrap_or(&self.pieces[0]);
+        piece.start.after(piece.jerk, t - piece.from_secs)
+    }
+
+    /// How long until the target velocity.
+    pub fn duration_secs(&self) -> f64 {
+        self.duration_secs
+    }
+
+    /// Least and greatest position on the way, m.
+    pub fn extent_m(&self) -> (f64, f64) {
+        let mut extent = (self.end.p, self.end.p);
+        let mut include = |p: f64| extent = (extent.0.min(p), extent.1.max(p));
+        for (i, piece) in self.pieces.iter().enumerate() {
+            include(piece.start.p);
+            let until = self.pieces.get(i + 1).map_or(self.duration_secs, |next| next.from_secs);
+            for t in turning_times(piece) {
+                if t > 0.0 && t < until - piece.from_secs {
+                    include(piece.start.after(piece.jerk, t).p);
+                }
+            }
+        }
+        extent
+    }
+}
+
+/// When a piece's velocity is zero, s from its start.
+fn turning_times(piece: &Piece) -> [f64; 2] {
+    let AxisState { v, a, .. } = piece.start;
+    if piece.jerk == 0.0 {
+        return if a == 0.0 { [-1.0; 2] } else { [-v / a; 2] };
+    }
+    let discriminant = a * a - 2.0 * piece.jerk * v;
+    if discriminant < 0.0 {
+        return [-1.0; 2];
+    }
+    let root = discriminant.sqrt();
+    [(-a + root) / piece.jerk, (-a - root) / piece.jerk]
+}
+
+impl BrakePath {
+    /// The worst brake from `state`: both axes accelerate on for the reaction time, then brake at their limits.
+    pub fn worst(state: &State, limits: &Limits, reaction_secs: f64) -> Self {
+        Self {
+            x: AxisPath::worst_brake(state.x, &limits.x, reaction_secs),
+            y: AxisPath::worst_brake(state.y, &limits.y, reaction_secs),
+        }
+    }
+
+    /// The brake at the limits, begun now.
+    pub fn now(state: &State, limits: &Limits) -> Self {
+        Self { x: AxisPath::brake(state.x, &limits.x), y: AxisPath::brake(state.y, &limits.y) }
+    }
+
+    /// The centre `s` seconds from now.
+    pub fn centre(&self, s: f64) -> Floor {
+        Floor::new(self.x.at(s).p, self.y.at(s).p)
+    }
+
+    /// The whole state `s` seconds from now.
+    pub fn at(&self, s: f64) -> State {
+        State { x: self.x.at(s), y: self.y.at(s) }
+    }
+
+    /// Until both axes rest.
+    pub fn duration_secs(&self) -> f64 {
+        self.x.duration_secs.max(self.y.duration_secs)
+    }
+
+    /// The corners of the smallest floor rectangle that holds the whole path.
+    pub fn extent(&self) -> (Floor, Floor) {
+        let ((x0, x1), (y0, y1)) = (self.x.extent_m(), self.y.extent_m());
+        (Floor::new(x0, y0), Floor::new(x1, y1))
+    }
+
+    /// No centre of the path moves faster, m/s.
+    pub fn greatest_speed_mps(&self) -> f64 {
+        let most =
+            |axis: &AxisPath| axis.pieces.iter().map(|p| p.start.v.abs()).fold(0.0, f64::max) + RAMP_GAIN_MPS;
+        most(&self.x).hypot(most(&self.y))
+    }
+}
+
+/// Slower than this an axis has no heading of its own, m/s.
+const STILL_MPS: f64 = 1e-4;
+/// Between the starts of two pieces a velocity exceeds both by less than this, m/s (a_max^2 / 2 J of any sane machine).
+const RAMP_GAIN_MPS: f64 = 0.05;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const LIMITS: AxisLimits = AxisLimits::PAPER;
+
+    #[test]
+    fn braking_from_full_speed_takes_what_the_formula_says() {
+        let path = AxisPath::brake(AxisState { p: 0.0, v: 1.1, a: 0.0 }, &LIMITS);
+        // v / a + a / J, and v/2 of that as distance: a symmetrical trapezoid of deceleration.
+        let duration = 1.1 / 2.5 + 2.5 / 60.0;
+        assert!((path.duration_secs() - duration).abs() < 1e-12);
+        assert!((path.at(9.0).p - 1.1 * duration / 2.0).abs() < 1e-9);
+    }
+
+    proptest! {
+        #[test]
+        fn every_path_ends_at_its_target_within_limits(
+            v in -1.1..1.1f64, a in -2.5..2.5f64, target in -1.1..1.1f64,
+        ) {
+            let path = AxisPath::to_velocity(AxisState { p: 0.3, v, a }, target, &LIMITS);
+            let end = path.at(path.duration_secs() - 1e-9);
+            prop_assert!((end.v - target).abs() < 1e-6 && end.a.abs() < 1e-5, "ends at {end:?}");
+            let (mut t, step) = (0.0, 1e-3);
+            let mut before = path.at(0.0);
+            let bound = LIMITS.braking_mps2.max(a.abs());
+            while t < path.duration_secs() {
+                t += step;
+                let now = path.at(t);
+                prop_assert!(now.a.abs() <= bound + 1e-9);
+                prop_assert!((now.a - before.a).abs() <= LIMITS.jerk_mps3 * step + 1e-9);
+                prop_assert!((now.v - before.v - 0.5 * (now.a + before.a) * step).abs() < 1e-4);
+                before = now;
+            }
+        }
+
+        #[test]
+        fn the_extent_holds_the_whole_path(v in -1.1..1.1f64, a in -2.5..2.5f64) {
+            let path = AxisPath::worst_brake(AxisState { p: 0.0, v, a }, &LIMITS, 0.05);
+            let (low, high) = path.extent_m();
+            for k in 0..=200 {
+                let p = path.at(f64::from(k) / 200.0 * path.duration_secs()).p;
+                prop_assert!(p >= low - 1e-12 && p <= high + 1e-12);
+            }
+        }
+
+        #[test]
+        fn following_a_path_step_by_step_is_following_the_path(v in -1.0..1.0f64, target in -1.0..1.0f64) {
+            let whole = AxisPath::to_velocity(AxisState { p: 0.0, v, a: 0.0 }, target, &LIMITS);
+            let mut state = AxisState { p: 0.0, v, a: 0.0 };
+            let mut t = 0.0;
+            while t < whole.duration_secs() + 0.1 {
+                state = AxisPath::to_velocity(state, target, &LIMITS).at(0.004);
+                t += 0.004;
+            }
+            prop_assert!((state.v - target).abs() < 1e-6 && (state.p - whole.at(t).p).abs() < 5e-3);
+        }
+    }
+}

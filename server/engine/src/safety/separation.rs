@@ -1,0 +1,205 @@
+//! R3 and R13: speed and separation. May the column be in this state of motion, given where people can be?
+//!
+//! With d(c) the distance from a head axis to the footprint with its centre at c, a state is allowed when its worst
+//! brake (reaction included) keeps, for every person and every s until rest,
+//!
+//! ```text
+//!     d(c(s)) > r + v_h * (pose age + s) + allowance        (s begins before the reaction time)
+//! ```
+//!
+//! or when it retreats from that person. Keep-out shapes are the same with v_h = 0. At rest everything is allowed.
+//! It must never know who is served or why: it sees heads, shapes and a path.
+
+use crate::frames::{Floor, Planar};
+use crate::machine::{Limits, Travel};
+use crate::observation::PersonId;
+use crate::safety::parameters::Parameters;
+use crate::safety::path::{BrakePath, State};
+use crate::scene::Scene;
+
+/// A person as this rule sees them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Threat {
+    /// Who.
+    pub person: PersonId,
+    /// The head axis where the newest pose has it.
+    pub head: Floor,
+    /// Velocity of the head as far as poses tell, m/s.
+    pub velocity: Planar,
+    /// Age of that pose, s.
+    pub age_secs: f64,
+    /// The head is near an enabled object.
+    pub near_object: bool,
+    /// The head is low: crawling, sitting.
+    pub low: bool,
+}
+
+/// What is in the way of a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conflict {
+    /// With whom, or with which keep-out shape, or with the travel.
+    pub with: Obstacle,
+    /// The distance on the brake path where it fails, m.
+    pub distance_m: f64,
+    /// What is required there, m.
+    pub required_m: f64,
+}
+
+/// What a state can be in conflict with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Obstacle {
+    /// A person (R3).
+    Person(PersonId),
+    /// A keep-out shape of the scene, by index (R13).
+    KeepOut(usize),
+    /// The travel limits (R1).
+    Travel,
+}
+
+/// The rule in one situation: who is where, and what the machine can do.
+#[derive(Debug, Clone, Copy)]
+pub struct Separation<'a> {
+    /// Footprint and keep-out shapes.
+    pub scene: &'a Scene,
+    /// The machine's limits.
+    pub limits: &'a Limits,
+    /// The machine's travel.
+    pub travel: &'a Travel,
+    /// Everybody.
+    pub threats: &'a [Threat],
+    /// The rule's numbers.
+    pub parameters: &'a Parameters,
+}
+
+impl Separation<'_> {
+    /// Allow a commanded state, with all that the engine must keep beyond the rule.
+    pub fn certify(&self, state: &State) -> Result<(), Conflict> {
+        let path = BrakePath::worst(state, self.limits, self.parameters.reaction.secs());
+        self.certify_travel(state, &path)?;
+        self.certify_path(state, &path, self.parameters.following_allowance_m)
+    }
+
+    /// Allow the measured state: the plain rule, braking begun now.
+    pub fn certify_measured(&self, state: &State) -> Result<(), Conflict> {
+        self.certify_path(state, &BrakePath::now(state, self.limits), 0.0)
+    }
+
+    /// What the rule asks of the distance to one person at this speed, m.
+    pub fn required_m(&self, state: &State, threat: &Threat) -> f64 {
+        let path = BrakePath::worst(state, self.limits, self.parameters.reaction.secs());
+        let walking_secs = if state.velocity().norm() < AT_REST_MPS { 0.0 } else { path.duration_secs() };
+        self.radius_m(threat, state.velocity().norm())
+            + self.parameters.v_h_mps * (threat.age_secs + walking_secs)
+    }
+
+    /// r for this head at this speed of the column, m.
+    pub fn radius_m(&self, threat: &Threat, speed_mps: f64) -> f64 {
+        let p = self.parameters;
+        match (threat.low, threat.near_object && speed_mps <= p.near_speed_mps) {
+            (true, _) => p.low_radius_m,
+            (false, true) => p.near_radius_m,
+            (false, false) => p.radius_m,
+        }
+    }
+
+    fn certify_travel(&self, state: &State, path: &BrakePath) -> Result<(), Conflict> {
+        let inside = self.travel.shrunk(self.parameters.travel_margin_m);
+        let (low, high) = path.extent();
+        let at = state.position();
+        // From outside the margin (after homing into the corner) every way in is open, no way further out.
+        let depth = (low.x - inside.min.x.min(at.x))
+            .min(low.y - inside.min.y.min(at.y))
+            .min(inside.max.x.max(at.x) - high.x)
+            .min(inside.max.y.max(at.y) - high.y);
+        if depth < -ROUNDING_M {
+            return Err(Conflict { with: Obstacle::Travel, distance_m: depth, required_m: 0.0 });
+        }
+        Ok(())
+    }
+
+    fn certify_path(&self, state: &State, path: &BrakePath, allowance_m: f64) -> Result<(), Conflict> {
+        let velocity = state.velocity();
+        if velocity.norm() < AT_REST_MPS && state.acceleration().norm() == 0.0 {
+            return Ok(());
+        }
+        for threat in self.threats {
+            let r = self.radius_m(threat, velocity.norm());
+            let required = |s: f64| r + self.parameters.v_h_mps * (threat.age_secs + s) + allowance_m;
+            let distance = |c: Floor| self.scene.footprint().distance_m(c, threat.head);
+            if let Err((distance_m, required_m)) = keeps(path, self.parameters.v_h_mps, distance, required)
+                && !self.retreats(state, threat)
+            {
+                return Err(Conflict { with: Obstacle::Person(threat.person), distance_m, required_m });
+            }
+        }
+        for (index, keep_out) in self.scene.keep_outs().iter().enumerate() {
+            let distance = |c: Floor| keep_out.distance_m(self.scene.footprint(), c);
+            let required = |_| self.parameters.radius_m + allowance_m;
+            let leaves = || {
+                let away = keep_out.away(self.scene.footprint(), state.position());
+                away.is_some_and(|away| self.is_retreat(velocity, away))
+            };
+            if let Err((distance_m, required_m)) = keeps(path, 0.0, distance, required)
+                && !leaves()
+            {
+                return Err(Conflict { with: Obstacle::KeepOut(index), distance_m, required_m });
+            }
+        }
+        Ok(())
+    }
+
+    /// The column moves away from this person, slowly, and they do not come after it faster than it leaves.
+    fn retreats(&self, state: &State, threat: &Threat) -> bool {
+        let centre = state.position();
+        let footprint = self.scene.footprint();
+        let Some(away) = footprint.away_from(centre, threat.head) else { return false };
+        let Some(from_head) = (centre - threat.head).unit() else { return false };
+        let velocity = state.velocity();
+        let gains = velocity.dot(away) >= threat.velocity.dot(away).max(0.0);
+        footprint.distance_m(centre, threat.head) > self.parameters.radius_m + RETREAT_MARGIN_M
+            && gains
+            && self.is_retreat(velocity, away)
+            && self.is_retreat(velocity, from_head)
+    }
+
+    fn is_retreat(&self, velocity: Planar, away: Planar) -> bool {
+        let speed = velocity.norm();
+        speed <= self.parameters.retreat_speed_mps
+            && velocity.dot(away) >= speed * self.parameters.retreat_cone_rad.cos()
+    }
+}
+
+/// The distance stays above what is required along the whole path; else where it first does not.
+///
+/// Conservative advancement: neither side changes faster than (column speed + v_h), so a slack of g needs no second
+/// look for g / (column speed + v_h) seconds.
+fn keeps(
+    path: &BrakePath,
+    v_h_mps: f64,
+    distance: impl Fn(Floor) -> f64,
+    required: impl Fn(f64) -> f64,
+) -> Result<(), (f64, f64)> {
+    let closing_mps = path.greatest_speed_mps() + v_h_mps;
+    let end = path.duration_secs();
+    let mut s = 0.0;
+    loop {
+        let (d, needed) = (distance(path.centre(s)), required(s));
+        let slack = d - needed;
+        if slack <= 0.0 {
+            return Err((d, needed));
+        }
+        if s >= end {
+            return Ok(());
+        }
+        s = (s + (slack / closing_mps).max(LEAST_STEP_SECS)).min(end);
+    }
+}
+
+/// Slower than this the column rests, m/s.
+const AT_REST_MPS: f64 = 1e-6;
+/// Shortest look-ahead step; at 3 m/s of closing speed less than a millimetre passes unseen.
+const LEAST_STEP_SECS: f64 = 2.5e-4;
+/// Floating point on a path that ends on the margin, m.
+const ROUNDING_M: f64 = 1e-9;
+/// A retreat begins this far outside the rule's 0.35 m, m.
+const RETREAT_MARGIN_M: f64 = 0.03;
