@@ -8,8 +8,10 @@
 pub mod engine;
 pub mod event;
 pub mod frames;
+pub mod intention;
 pub mod machine;
 pub mod mode;
+pub mod motion;
 pub mod observation;
 pub mod person;
 pub mod safety;
