@@ -1,15 +1,29 @@
 //! The engine: observe, request, step. It owns no clock; the caller says when it is.
+//!
+//! One step: the supervisor looks at every rule and may change the mode; the intention of every visitor is weighed;
+//! the mode says what the machine does; in `following` motion proposes and safety disposes.
+
+mod following;
+mod view;
 
 use std::sync::Arc;
 
-use crate::event::Event;
-use crate::machine::{Limits, Travel};
-use crate::mode::{Mode, RequestKind};
+use crate::event::{Event, EventKind};
+use crate::intention::RuleName;
+use crate::machine::{Drive, Homing, Limits, MachineReport, Travel};
+use crate::mode::{self, Conditions, Mode, RequestKind, Response};
 use crate::observation::{Observation, PersonId};
+use crate::person::Person;
+use crate::safety::governor::Governor;
+use crate::safety::parameters::Parameters;
+use crate::safety::path::State;
+use crate::safety::separation::{Separation, Threat};
+use crate::safety::supervisor::{Demand, Supervisor, Watched, clears_when};
 use crate::safety::vetted::{Action, Vetted};
 use crate::scene::Scene;
-use crate::snapshot::Snapshot;
+use crate::snapshot::{RuleId, StopCause};
 use crate::time::{Span, Time};
+use following::Following;
 
 /// What the engine is built with. Right once built.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,8 +34,8 @@ pub struct EngineConfig {
     pub travel: Travel,
     /// Control period.
     pub period: Span,
-    /// The intention rule, by name.
-    pub intention_rule: String,
+    /// The intention rule.
+    pub intention_rule: RuleName,
     /// v_h of the separation rule, m/s.
     pub v_h_mps: f64,
     /// Start latched, with this reason: the last run ended in a latched stop.
@@ -65,32 +79,156 @@ pub enum Outcome {
 #[derive(Debug)]
 pub struct Engine {
     config: EngineConfig,
+    parameters: Parameters,
     scene: Arc<Scene>,
+    priors: Vec<f64>,
+    mode: Mode,
+    mode_since: Time,
+    /// Where a protective stop goes back to.
+    resumes: Mode,
+    /// Since when no rule has demanded a protective stop.
+    quiet_since: Option<Time>,
+    stop: Option<StopCause>,
+    arena_confirmed_clear: bool,
+    persons: Vec<Person>,
+    threats: Vec<Threat>,
+    report: Option<MachineReport>,
+    /// Since when the machine has been at rest, as measured.
+    rests_since: Option<Time>,
+    supervisor: Supervisor,
+    governor: Option<Governor>,
+    following: Following,
     events: Vec<Event>,
+    pending: Vec<EventKind>,
 }
 
 impl Engine {
-    /// A disarmed engine (or latched, if the last run ended so).
+    /// A disarmed engine; latched, if the last run ended in a latched stop.
     pub fn new(config: EngineConfig, scene: Arc<Scene>) -> Self {
-        Self { config, scene, events: Vec::new() }
+        let parameters = Parameters::new(config.v_h_mps);
+        let mut engine = Self {
+            parameters,
+            priors: scene.spec().objects.iter().map(|o| o.prior).collect(),
+            mode: Mode::Disarmed,
+            mode_since: Time::ZERO,
+            resumes: Mode::Following,
+            quiet_since: None,
+            stop: None,
+            arena_confirmed_clear: false,
+            persons: Vec::new(),
+            threats: Vec::new(),
+            report: None,
+            rests_since: None,
+            supervisor: Supervisor::new(parameters),
+            governor: None,
+            following: Following::new(config.intention_rule),
+            events: Vec::new(),
+            pending: Vec::new(),
+            scene,
+            config,
+        };
+        if let Some(reason) = engine.config.latched_because.clone() {
+            engine.latch(RuleId(4), format!("the last run ended in a latched stop: {reason}"), Time::ZERO);
+        }
+        engine
     }
 
     /// Take in a fact that was seen at `now`.
-    pub fn observe(&mut self, _now: Time, _observation: Observation) {}
+    pub fn observe(&mut self, now: Time, observation: Observation) {
+        match observation {
+            Observation::PersonEntered(id) => {
+                if self.person(id).is_none() {
+                    self.persons.push(Person::new(id));
+                    self.persons.sort_by_key(Person::id);
+                    self.pending.push(EventKind::PersonEntered(id));
+                }
+            }
+            Observation::PersonLeft(id) => {
+                let before = self.persons.len();
+                self.persons.retain(|p| p.id() != id);
+                if self.persons.len() < before {
+                    self.pending.push(EventKind::PersonLeft(id));
+                }
+            }
+            Observation::Pose(id, sample) => {
+                if let Some(person) = self.persons.iter_mut().find(|p| p.id() == id) {
+                    person.take_pose(sample, &self.scene, &self.parameters);
+                }
+            }
+            Observation::OriginChanged(id) => self.with_person(id, Person::origin_changed),
+            Observation::ClientGone(id) => self.with_person(id, |p| p.set_client_present(false)),
+            Observation::ClientBack(id) => self.with_person(id, |p| p.set_client_present(true)),
+            Observation::Machine(report) => {
+                let rests = report.velocity.norm() < AT_REST_MPS;
+                self.rests_since = if rests { self.rests_since.or(Some(now)) } else { None };
+                self.report = Some(report);
+            }
+            Observation::DeadlineMissed => self.supervisor.deadline(false),
+            Observation::DeadlineMet => self.supervisor.deadline(true),
+        }
+        self.record(now);
+    }
 
     /// Answer a request at once.
-    pub fn request(&mut self, _now: Time, _request: Request) -> Answer {
-        Answer { outcome: Outcome::Refused, detail: String::new() }
+    pub fn request(&mut self, now: Time, request: Request) -> Answer {
+        let answer = match request {
+            Request::Machine(kind, reason) => self.request_machine(now, kind, reason.unwrap_or_default()),
+            Request::ConfirmOrigin(id) => self.confirm_origin(id),
+            Request::SetPriors(changes) => self.set_priors(&changes),
+            Request::ActivateScene(scene) => self.activate(scene),
+        };
+        self.record(now);
+        answer
     }
 
     /// Decide what the machine does until the next step.
     pub fn step(&mut self, now: Time) -> Vetted {
-        Vetted::new(now, Action::Release)
-    }
-
-    /// The whole state at `now`.
-    pub fn snapshot(&self, _now: Time) -> Snapshot {
-        unreachable!("skeleton")
+        self.threats.clear();
+        self.threats.extend(self.persons.iter().filter_map(|p| p.threat(now)));
+        self.supervise(now);
+        self.progress_homing(now);
+        let config = &self.config;
+        let wish = self.following.weigh(&self.persons, &self.scene, &self.priors, now, &self.parameters);
+        let action = match self.mode {
+            Mode::Disarmed | Mode::LatchedStop | Mode::Faulted => self.stop_and_release(now),
+            Mode::Homing if self.may_home() => Action::Home,
+            Mode::Homing => Action::Hold,
+            Mode::ProtectiveStop if self.resumes == Mode::Homing => Action::Hold,
+            Mode::Ready | Mode::Following | Mode::ProtectiveStop => {
+                let Some(report) = self.report else { return Vetted::new(now, Action::Hold) };
+                let governor = self.governor.get_or_insert_with(|| Governor::at_rest(report.position));
+                let separation = Separation {
+                    scene: &self.scene,
+                    limits: &config.limits,
+                    travel: &config.travel,
+                    threats: &self.threats,
+                    parameters: &self.parameters,
+                };
+                let measured = State::moving(report.position, report.velocity);
+                if self.mode == Mode::Following {
+                    let since = now - self.mode_since;
+                    self.following.follow(governor, wish, &measured, &separation, since, config.period);
+                    match self.following.conflict() {
+                        None if wish.is_none() => self.supervisor.separation_idle(now, &mut self.pending),
+                        conflict => self.supervisor.separation(conflict, now, &mut self.pending),
+                    }
+                    self.pending.extend(self.following.served(&measured, &self.scene, &self.persons));
+                } else {
+                    governor.protective_brake(&separation, config.period);
+                    self.following.rest_at(governor.commanded().position());
+                    self.supervisor.separation_idle(now, &mut self.pending);
+                }
+                self.record(now);
+                return governor_command(self.governor.as_ref(), now, self.parameters.reaction);
+            }
+        };
+        self.governor = None;
+        self.supervisor.separation_idle(now, &mut self.pending);
+        if let Some(report) = self.report {
+            self.following.rest_at(report.position);
+        }
+        self.record(now);
+        Vetted::new(now, action)
     }
 
     /// The events since the last call, oldest first.
@@ -100,7 +238,7 @@ impl Engine {
 
     /// The state of the machine.
     pub fn mode(&self) -> Mode {
-        Mode::Disarmed
+        self.mode
     }
 
     /// The scene in force.
@@ -108,8 +246,223 @@ impl Engine {
         &self.scene
     }
 
+    /// The priors in force, by object.
+    pub fn priors(&self) -> &[f64] {
+        &self.priors
+    }
+
     /// What it was built with.
     pub fn config(&self) -> &EngineConfig {
         &self.config
     }
+
+    fn supervise(&mut self, now: Time) {
+        let watched = Watched {
+            now,
+            report: self.report.as_ref(),
+            tracking: self.governor.as_ref().map(Governor::commanded),
+            homes: self.mode == Mode::Homing,
+            persons: &self.persons,
+            arena_confirmed_clear: self.arena_confirmed_clear,
+            travel: &self.config.travel,
+        };
+        let demand = self.supervisor.watch(&watched, &mut self.pending);
+        let moves = matches!(self.mode, Mode::Homing | Mode::Following | Mode::ProtectiveStop);
+        let powered = moves || self.mode == Mode::Ready;
+        match demand {
+            Some(Demand::Fault(rule)) if self.mode != Mode::Faulted && self.mode != Mode::LatchedStop => {
+                let reason = self.supervisor.rule(rule).reason.clone();
+                self.enter_stop(Mode::Faulted, rule, reason, now);
+            }
+            Some(Demand::LatchedStop(rule)) if powered => {
+                let reason = self.supervisor.rule(rule).reason.clone();
+                self.latch(rule, reason, now);
+            }
+            Some(Demand::ProtectiveStop(rule)) if moves => {
+                self.quiet_since = None;
+                if self.mode != Mode::ProtectiveStop {
+                    self.resumes = self.mode;
+                    let reason = self.supervisor.rule(rule).reason.clone();
+                    self.enter_stop(Mode::ProtectiveStop, rule, reason, now);
+                }
+            }
+            None if self.mode == Mode::ProtectiveStop => {
+                let since = *self.quiet_since.get_or_insert(now);
+                if now - since >= self.parameters.clears_after {
+                    self.enter(self.resumes, "the cause of the protective stop is gone", now);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn progress_homing(&mut self, now: Time) {
+        let homing = self.report.map(|r| r.homing);
+        // The machine says `Homed` of an earlier run until it has taken up the command.
+        let begun = now - self.mode_since > self.parameters.link;
+        match (self.mode, homing) {
+            (Mode::Homing, Some(Homing::Homed)) if begun => self.enter(Mode::Ready, "homed", now),
+            (
+                Mode::Ready | Mode::Following | Mode::ProtectiveStop,
+                Some(Homing::NotHomed | Homing::Failed),
+            ) if self.governor.is_some() => {
+                self.latch(RuleId(7), "the machine has lost its home".to_owned(), now);
+            }
+            _ => {}
+        }
+    }
+
+    /// Brake at the limit; once at rest (or long since unheard), release.
+    fn stop_and_release(&self, now: Time) -> Action {
+        let drive_is_on = self.report.is_some_and(|r| r.drive == Drive::On);
+        let rests = self.rests_since.is_some_and(|since| now - since >= REST_BEFORE_RELEASE);
+        let long_enough = now - self.mode_since > LONGEST_BRAKE;
+        if drive_is_on && !rests && !long_enough { Action::Hold } else { Action::Release }
+    }
+
+    /// Nobody can be met at creep speed, whichever way homing goes. Before the machine is homed its place is what it
+    /// remembers or was told of where it was parked, so people keep farther away.
+    fn may_home(&self) -> bool {
+        let Some(report) = self.report else { return false };
+        let p = &self.parameters;
+        let brake_secs = p.reaction.secs() + p.creep_speed_mps / self.config.limits.x.braking_mps2;
+        self.threats.iter().all(|t| {
+            let r = if t.low { p.low_radius_m } else { p.radius_m };
+            let needed = r + (p.v_h_mps + p.creep_speed_mps) * (t.age_secs + brake_secs) + PARKED_WITHIN_M;
+            self.scene.footprint().distance_m(report.position, t.head) > needed
+        })
+    }
+
+    fn request_machine(&mut self, now: Time, kind: RequestKind, reason: String) -> Answer {
+        match mode::respond(self.mode, kind, &self.conditions()) {
+            Response::AlreadySo(detail) => Answer { outcome: Outcome::AlreadySo, detail: detail.to_owned() },
+            Response::Refuse(detail) => Answer { outcome: Outcome::Refused, detail },
+            Response::Go(to) => {
+                match kind {
+                    RequestKind::Stop => {
+                        let why = if reason.is_empty() { "no reason given" } else { &reason };
+                        self.latch(RuleId(4), format!("software stop: {why}"), now);
+                    }
+                    RequestKind::Home | RequestKind::Arm => {
+                        self.arena_confirmed_clear = self.persons.is_empty();
+                        self.enter(to, kind.name(), now);
+                    }
+                    RequestKind::Disarm => self.enter(to, "disarmed", now),
+                    RequestKind::Reset => {
+                        self.supervisor.software_stop(false, "not pressed", now, &mut self.pending);
+                        self.enter(to, &format!("reset: {reason}"), now);
+                    }
+                }
+                Answer { outcome: Outcome::Accepted, detail: format!("now {}", self.mode.name()) }
+            }
+        }
+    }
+
+    fn conditions(&self) -> Conditions {
+        Conditions {
+            homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
+            cause_still_there: self.supervisor.cause_still_there(),
+        }
+    }
+
+    fn confirm_origin(&mut self, id: PersonId) -> Answer {
+        match self.persons.iter_mut().find(|p| p.id() == id) {
+            None => refused(format!("person {} is not in the arena", id.0)),
+            Some(person) if !person.awaits_confirmation() => {
+                Answer { outcome: Outcome::AlreadySo, detail: "this person's origin is confirmed".to_owned() }
+            }
+            Some(person) => {
+                person.confirm_origin();
+                Answer { outcome: Outcome::Accepted, detail: format!("person {} confirmed", id.0) }
+            }
+        }
+    }
+
+    fn set_priors(&mut self, changes: &[(usize, f64)]) -> Answer {
+        for (index, prior) in changes {
+            if *index >= self.priors.len() {
+                return refused(format!("object {index} of {} objects", self.priors.len()));
+            }
+            if !(0.0..=1.0).contains(prior) {
+                return refused(format!("prior {prior} of object {index}: expected 0 to 1"));
+            }
+        }
+        for (index, prior) in changes {
+            self.priors[*index] = *prior;
+        }
+        Answer { outcome: Outcome::Accepted, detail: format!("{} priors set", changes.len()) }
+    }
+
+    fn activate(&mut self, scene: Arc<Scene>) -> Answer {
+        if self.mode == Mode::Homing {
+            return refused("homing: wait until it is done".to_owned());
+        }
+        self.priors = scene.spec().objects.iter().map(|o| o.prior).collect();
+        self.scene = scene;
+        self.following.forget_visitors();
+        for person in &mut self.persons {
+            person.place_among(&self.scene, &self.parameters);
+        }
+        Answer { outcome: Outcome::Accepted, detail: "scene activated".to_owned() }
+    }
+
+    fn latch(&mut self, rule: RuleId, reason: String, now: Time) {
+        if rule == RuleId(4) {
+            self.supervisor.software_stop(true, &reason, now, &mut self.pending);
+        }
+        self.enter_stop(Mode::LatchedStop, rule, reason, now);
+    }
+
+    fn enter_stop(&mut self, to: Mode, rule: RuleId, reason: String, now: Time) {
+        let because = format!("{}: {reason}", rule.name());
+        self.enter(to, &because, now);
+        self.stop = Some(StopCause { rule, reason, clears_when: clears_when(rule).to_owned(), since: now });
+    }
+
+    fn enter(&mut self, to: Mode, because: &str, now: Time) {
+        self.quiet_since = None;
+        self.stop = None;
+        if matches!(to, Mode::Disarmed | Mode::LatchedStop | Mode::Faulted) {
+            self.arena_confirmed_clear = false;
+        }
+        if to != self.mode {
+            self.pending.push(EventKind::ModeChanged { from: self.mode, to, because: because.to_owned() });
+            self.mode = to;
+        }
+        self.mode_since = now;
+    }
+
+    fn person(&self, id: PersonId) -> Option<&Person> {
+        self.persons.iter().find(|p| p.id() == id)
+    }
+
+    fn with_person(&mut self, id: PersonId, act: impl FnOnce(&mut Person)) {
+        if let Some(person) = self.persons.iter_mut().find(|p| p.id() == id) {
+            act(person);
+        }
+    }
+
+    fn record(&mut self, now: Time) {
+        self.events.extend(self.pending.drain(..).map(|kind| Event { at: now, kind }));
+    }
 }
+
+fn governor_command(governor: Option<&Governor>, now: Time, valid_for: Span) -> Vetted {
+    governor.map_or_else(|| Vetted::new(now, Action::Hold), |g| g.command(now, valid_for))
+}
+
+fn refused(detail: String) -> Answer {
+    Answer { outcome: Outcome::Refused, detail }
+}
+
+/// Slower than this the machine rests, as measured, m/s.
+const AT_REST_MPS: f64 = 0.01;
+/// It has rested for so long before the drive is let go.
+const REST_BEFORE_RELEASE: Span = Span::from_millis(100);
+/// No brake of this machine takes longer; a machine that still moves after it is let go all the same.
+const LONGEST_BRAKE: Span = Span::from_millis(1500);
+/// A machine that is not homed stands within this of where it says, m.
+const PARKED_WITHIN_M: f64 = 0.3;
+
+#[cfg(test)]
+mod tests;

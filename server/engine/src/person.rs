@@ -16,6 +16,7 @@ pub struct Person {
     awaits_confirmation: bool,
     client_present: bool,
     implausible_until: Option<Time>,
+    nearest_object_m: f64,
     near_object: bool,
     low: bool,
 }
@@ -47,6 +48,7 @@ impl Person {
             awaits_confirmation: false,
             client_present: true,
             implausible_until: None,
+            nearest_object_m: f64::INFINITY,
             near_object: false,
             low: false,
         }
@@ -118,6 +120,11 @@ impl Person {
     /// Velocity over the floor, m/s, smoothed over about a tenth of a second.
     pub fn velocity(&self) -> Planar {
         self.velocity
+    }
+
+    /// From the head to the nearest enabled object, m; infinite without one.
+    pub fn nearest_object_m(&self) -> f64 {
+        self.nearest_object_m
     }
 
     /// Waits for a game master's word (R15).

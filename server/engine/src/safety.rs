@@ -2,7 +2,9 @@
 //!
 //! It never imports `intention`. It is small and plain on purpose.
 
+pub mod governor;
 pub mod parameters;
 pub mod path;
 pub mod separation;
+pub mod supervisor;
 pub mod vetted;

@@ -15,7 +15,7 @@ pub struct Parameters {
     pub radius_m: f64,
     /// R3: near an enabled object, at creeping speed alone, m.
     pub near_radius_m: f64,
-    /// R3: greatest speed with the near radius, m/s; commanded a little less than the rule's 0.25.
+    /// R3: greatest speed with the near radius, m/s.
     pub near_speed_mps: f64,
     /// R3: a head nearer than this to an enabled object is near, m; half of the hysteresis.
     pub near_enter_m: f64,
@@ -27,7 +27,7 @@ pub struct Parameters {
     pub low_head_m: f64,
     /// R3: from a decision to its effect on the machine, T_r.
     pub reaction: Span,
-    /// R3: speed of a retreat, m/s; the rule's 0.3 less what a machine may overshoot.
+    /// R3: greatest speed of a retreat, m/s; the rule's 0.3 less what a machine may overshoot.
     pub retreat_speed_mps: f64,
     /// R3: half the cone of a retreat about "directly away"; the rule's 60 degrees less a margin, rad.
     pub retreat_cone_rad: f64,
@@ -66,7 +66,7 @@ impl Parameters {
             v_h_mps,
             radius_m: 0.35,
             near_radius_m: 0.25,
-            near_speed_mps: 0.22,
+            near_speed_mps: 0.25,
             near_enter_m: 0.75,
             near_leave_m: 0.85,
             low_radius_m: 1.0,

@@ -101,6 +101,11 @@ impl AxisPath {
         Self::build(start, None, 0.0, limits.braking_mps2, limits.jerk_mps3)
     }
 
+    /// To rest with this share of the axis' braking and jerk, so that two axes come to rest together.
+    pub fn brake_with_share(start: AxisState, limits: &AxisLimits, share: f64) -> Self {
+        Self::build(start, None, 0.0, limits.braking_mps2 * share, limits.jerk_mps3 * share)
+    }
+
     /// The brake of an axis that, for `reaction_secs` more, accelerates as hard as it may in its direction.
     pub fn worst_brake(start: AxisState, limits: &AxisLimits, reaction_secs: f64) -> Self {
         let heading = if start.v.abs() > STILL_MPS { start.v } else { start.a };

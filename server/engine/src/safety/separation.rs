@@ -76,12 +76,17 @@ impl Separation<'_> {
     pub fn certify(&self, state: &State) -> Result<(), Conflict> {
         let path = BrakePath::worst(state, self.limits, self.parameters.reaction.secs());
         self.certify_travel(state, &path)?;
-        self.certify_path(state, &path, self.parameters.following_allowance_m)
+        let speed = state.velocity().norm() + MACHINE_OVERSHOOT_MPS;
+        self.certify_path(state, &path, speed, self.parameters.following_allowance_m)
     }
 
     /// Allow the measured state: the plain rule, braking begun now.
     pub fn certify_measured(&self, state: &State) -> Result<(), Conflict> {
-        self.certify_path(state, &BrakePath::now(state, self.limits), 0.0)
+        let speed = state.velocity().norm();
+        if speed < MEASUREMENT_NOISE_MPS {
+            return Ok(());
+        }
+        self.certify_path(state, &BrakePath::now(state, self.limits), speed, 0.0)
     }
 
     /// What the rule asks of the distance to one person at this speed, m.
@@ -117,13 +122,20 @@ impl Separation<'_> {
         Ok(())
     }
 
-    fn certify_path(&self, state: &State, path: &BrakePath, allowance_m: f64) -> Result<(), Conflict> {
+    /// `speed_mps` is the speed that the zones of the rule are chosen by.
+    fn certify_path(
+        &self,
+        state: &State,
+        path: &BrakePath,
+        speed_mps: f64,
+        allowance_m: f64,
+    ) -> Result<(), Conflict> {
         let velocity = state.velocity();
         if velocity.norm() < AT_REST_MPS && state.acceleration().norm() == 0.0 {
             return Ok(());
         }
         for threat in self.threats {
-            let r = self.radius_m(threat, velocity.norm());
+            let r = self.radius_m(threat, speed_mps);
             let required = |s: f64| r + self.parameters.v_h_mps * (threat.age_secs + s) + allowance_m;
             let distance = |c: Floor| self.scene.footprint().distance_m(c, threat.head);
             if let Err((distance_m, required_m)) = keeps(path, self.parameters.v_h_mps, distance, required)
@@ -195,6 +207,10 @@ fn keeps(
     }
 }
 
+/// The true speed exceeds the commanded one by less than this, m/s.
+const MACHINE_OVERSHOOT_MPS: f64 = 0.03;
+/// A machine at rest measures less than this, m/s.
+const MEASUREMENT_NOISE_MPS: f64 = 0.02;
 /// Slower than this the column rests, m/s.
 const AT_REST_MPS: f64 = 1e-6;
 /// Shortest look-ahead step; at 3 m/s of closing speed less than a millimetre passes unseen.

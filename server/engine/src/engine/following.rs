@@ -1,0 +1,255 @@
+//! In `following`: whom the column serves, where it is wanted, and what safety makes of the way there.
+
+use crate::event::EventKind;
+use crate::frames::{Floor, Planar};
+use crate::intention::{self, Belief, Rule, RuleName, Sight};
+use crate::motion::Proposals;
+use crate::motion::proxy::{Bump, Proxy};
+use crate::observation::PersonId;
+use crate::person::Person;
+use crate::safety::governor::Governor;
+use crate::safety::parameters::Parameters;
+use crate::safety::path::State;
+use crate::safety::separation::{Conflict, Separation};
+use crate::scene::Scene;
+use crate::time::{Span, Time};
+
+/// What the column is wanted for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wish {
+    /// Whom it serves.
+    pub visitor: PersonId,
+    /// The command position.
+    pub target: Floor,
+    /// The object that the visitor's rule is committed to.
+    pub committed: Option<usize>,
+}
+
+/// One visitor with a rule of their own.
+#[derive(Debug)]
+struct Visitor {
+    person: PersonId,
+    rule: Box<dyn Rule>,
+    belief: Belief,
+}
+
+/// Intention of every visitor, and the proxy.
+#[derive(Debug)]
+pub struct Following {
+    rule: RuleName,
+    visitors: Vec<Visitor>,
+    sights: Vec<Sight>,
+    serves: Option<PersonId>,
+    wish: Option<Wish>,
+    proxy: Proxy,
+    proposals: Proposals,
+    conflict: Option<Conflict>,
+    clearances_m: Vec<f64>,
+    announced: Option<(PersonId, usize)>,
+}
+
+impl Following {
+    pub fn new(rule: RuleName) -> Self {
+        Self {
+            rule,
+            visitors: Vec::new(),
+            sights: Vec::new(),
+            serves: None,
+            wish: None,
+            proxy: Proxy::at(Floor::new(0.0, 0.0)),
+            proposals: Proposals::default(),
+            conflict: None,
+            clearances_m: Vec::new(),
+            announced: None,
+        }
+    }
+
+    /// Weigh every visitor's objects and choose whom to serve: the strongest intention, with some constancy.
+    pub fn weigh(
+        &mut self,
+        persons: &[Person],
+        scene: &Scene,
+        priors: &[f64],
+        now: Time,
+        parameters: &Parameters,
+    ) -> Option<Wish> {
+        self.visitors.retain(|v| persons.iter().any(|p| p.id() == v.person));
+        self.clearances_m.clear();
+        for person in persons {
+            self.clearances_m.push(cone_radius_m(person.nearest_object_m()));
+            let Some(sample) = person.newest().filter(|_| person.lost(now, parameters).is_none()) else {
+                continue;
+            };
+            let index = self.visitors.iter().position(|v| v.person == person.id()).unwrap_or_else(|| {
+                let rule = self.rule.rule();
+                self.visitors.push(Visitor { person: person.id(), rule, belief: Belief::default() });
+                self.visitors.len() - 1
+            });
+            let visitor = &mut self.visitors[index];
+            intention::sights(scene, priors, &sample.pose, &mut self.sights);
+            visitor.rule.weigh(&self.sights, &mut visitor.belief);
+        }
+        let reliable =
+            |v: &&Visitor| persons.iter().any(|p| p.id() == v.person && p.lost(now, parameters).is_none());
+        let strength = |v: &Visitor| {
+            let strongest = v.belief.weights.iter().copied().fold(0.0, f64::max);
+            strongest + if self.serves == Some(v.person) { CONSTANCY } else { 0.0 }
+        };
+        let served = self
+            .visitors
+            .iter()
+            .filter(reliable)
+            .max_by(|a, b| strength(a).total_cmp(&strength(b)).then(b.person.cmp(&a.person)));
+        self.wish = served.and_then(|v| {
+            let target = intention::command_position(scene, &v.belief)?;
+            Some(Wish { visitor: v.person, target, committed: v.belief.committed })
+        });
+        self.serves = served.map(|v| v.person);
+        self.wish
+    }
+
+    /// Move the commanded state on by one period.
+    pub fn follow(
+        &mut self,
+        governor: &mut Governor,
+        wish: Option<Wish>,
+        measured: &State,
+        separation: &Separation<'_>,
+        since: Span,
+        period: Span,
+    ) {
+        let here = governor.commanded().position();
+        let inside = separation.travel.shrunk(separation.parameters.travel_margin_m);
+        let target = inside.clamped(wish.map_or(here, |w| w.target));
+        let settled =
+            here.distance_m(target) < SETTLED_M && governor.commanded().velocity().norm() < SETTLED_MPS;
+        if settled || wish.is_none() {
+            // Nothing is wanted, but somebody may be coming: the measured state is still looked at.
+            let choice = governor.govern(&[Planar::ZERO], measured, separation, period);
+            self.conflict = choice.conflict.filter(|_| choice.taken.is_none() && !settled);
+            self.proxy = Proxy::at(governor.commanded().position());
+            return;
+        }
+        let clearances = &self.clearances_m;
+        let ball = self.proxy.position();
+        let heads = separation.threats.iter().zip(clearances).filter_map(|(threat, radius_m)| {
+            let from_head = ball - threat.head;
+            Some(Bump { gap_m: from_head.norm() - radius_m, away: from_head.unit()? })
+        });
+        let footprint = separation.scene.footprint();
+        let rims = separation.scene.keep_outs().iter().filter_map(|keep_out| {
+            let gap_m =
+                keep_out.distance_m(footprint, ball) - separation.parameters.radius_m - KEEP_OUT_RIM_M;
+            Some(Bump { gap_m, away: keep_out.away(footprint, ball)? })
+        });
+        self.proxy.roll(target, here, heads.chain(rims), separation.limits, &inside, period.secs());
+        let soft_start_mps = SOFT_START_MPS + SOFT_START_MPS2 * since.secs();
+        let wanted = self.proxy.followed_from(here);
+        self.proposals.fill(wanted, soft_start_mps, here, target, separation.threats);
+        let choice = governor.govern(self.proposals.velocities(), measured, separation, period);
+        if let Some(index) = choice.taken {
+            self.proposals.took(index, here, target);
+        }
+        self.conflict = choice.conflict;
+    }
+
+    /// The column is not following: the ball lies where it stands.
+    pub fn rest_at(&mut self, column: Floor) {
+        self.proxy = Proxy::at(column);
+        self.conflict = None;
+        self.announced = None;
+    }
+
+    /// The scene changed: every visitor starts anew.
+    pub fn forget_visitors(&mut self) {
+        self.visitors.clear();
+        self.announced = None;
+    }
+
+    /// The column stands at the object and the visitor is within reach: said once.
+    pub fn served(&mut self, measured: &State, scene: &Scene, persons: &[Person]) -> Option<EventKind> {
+        let wish = self.wish?;
+        let index = wish.committed?;
+        let object = scene.objects().get(index)?;
+        let head = persons.iter().find(|p| p.id() == wish.visitor)?.newest()?.pose;
+        let in_place = measured.position().distance_m(object.column_place()) < IN_PLACE_M;
+        let still = measured.velocity().norm() < IN_PLACE_MPS;
+        if object.distance_m(&head.position) > WITHIN_REACH_M {
+            if self.announced == Some((wish.visitor, index)) {
+                self.announced = None;
+            }
+            return None;
+        }
+        if !(in_place && still) || self.announced == Some((wish.visitor, index)) {
+            return None;
+        }
+        self.announced = Some((wish.visitor, index));
+        Some(EventKind::Served { person: wish.visitor, object: index })
+    }
+
+    /// What is in the way of the wanted motion.
+    pub fn conflict(&self) -> Option<Conflict> {
+        self.conflict
+    }
+
+    pub fn wish(&self) -> Option<&Wish> {
+        self.wish.as_ref()
+    }
+
+    pub fn proxy(&self) -> &Proxy {
+        &self.proxy
+    }
+
+    pub fn rule(&self) -> RuleName {
+        self.rule
+    }
+
+    /// The belief about the served visitor.
+    pub fn belief(&self) -> Option<&Belief> {
+        let serves = self.serves?;
+        self.visitors.iter().find(|v| v.person == serves).map(|v| &v.belief)
+    }
+
+    pub fn serves(&self) -> Option<PersonId> {
+        self.serves
+    }
+}
+
+/// The paper's cone: 45 cm around a person, shrinking smoothly to 20 cm as the head comes near an object.
+fn cone_radius_m(nearest_object_m: f64) -> f64 {
+    let share = ((nearest_object_m - CONE_SMALL_WITHIN_M) / (CONE_LARGE_FROM_M - CONE_SMALL_WITHIN_M))
+        .clamp(0.0, 1.0);
+    CONE_SMALL_M + (CONE_LARGE_M - CONE_SMALL_M) * share
+}
+
+/// A visitor who is served keeps being served against one who is this much stronger.
+const CONSTANCY: f64 = 0.1;
+const CONE_LARGE_M: f64 = 0.45;
+const CONE_SMALL_M: f64 = 0.20;
+const CONE_SMALL_WITHIN_M: f64 = 0.40;
+const CONE_LARGE_FROM_M: f64 = 0.75;
+/// The ball keeps this much more off a keep-out shape than the separation rule asks, m.
+const KEEP_OUT_RIM_M: f64 = 0.03;
+/// After arming and after a protective stop the speed begins here and grows: m/s, m/s2.
+const SOFT_START_MPS: f64 = 0.2;
+const SOFT_START_MPS2: f64 = 0.6;
+/// Closer and slower than this there is nothing to correct: m, m/s.
+const SETTLED_M: f64 = 0.001;
+const SETTLED_MPS: f64 = 0.002;
+/// Success as the evaluation has it: m, m/s.
+const IN_PLACE_M: f64 = 0.1;
+const IN_PLACE_MPS: f64 = 0.05;
+/// An arm's length from the head to the surface, m.
+const WITHIN_REACH_M: f64 = 0.75;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cone_is_the_papers() {
+        assert!((cone_radius_m(2.0) - 0.45).abs() < 1e-12);
+        assert!((cone_radius_m(0.1) - 0.20).abs() < 1e-12);
+        assert!(cone_radius_m(0.5) < cone_radius_m(0.6));
+    }
+}

@@ -1,0 +1,320 @@
+//! The engine as a whole, on virtual time, in front of a machine that does exactly what it is told.
+
+use super::*;
+use crate::frames::{Floor, Planar, Point, Pose};
+use crate::observation::PoseSample;
+use crate::scene::{ObjectSpec, SceneSpec, Shape};
+use nalgebra::UnitQuaternion;
+use proptest::prelude::*;
+
+const PERIOD: Span = Span::from_millis(4);
+const TRAVEL: Travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
+const VISITOR: PersonId = PersonId(1);
+
+/// An engine, an obedient machine and a visitor whose pose arrives with each step, 20 ms old.
+struct Room {
+    engine: Engine,
+    now: Time,
+    report: MachineReport,
+    head: Option<(f64, f64, f64)>,
+    machine_answers: bool,
+}
+
+impl Room {
+    fn new(latched_because: Option<&str>) -> Self {
+        let ball = |id: &str, x, y| ObjectSpec {
+            id: id.into(),
+            position: Point::new(x, y, 1.4),
+            yaw_rad: 0.0,
+            shape: Shape::Sphere { radius_m: 0.1 },
+            prop: None,
+            prior: 1.0,
+            enabled: true,
+        };
+        let spec = SceneSpec::open(TRAVEL, vec![ball("left", 3.5, 3.5), ball("right", 3.5, 0.5)]);
+        let config = EngineConfig {
+            limits: Limits::PAPER,
+            travel: TRAVEL,
+            period: PERIOD,
+            intention_rule: RuleName::PaperBest,
+            v_h_mps: 1.6,
+            latched_because: latched_because.map(str::to_owned),
+        };
+        Self {
+            engine: Engine::new(config, Arc::new(Scene::build(spec).unwrap())),
+            now: Time::ZERO,
+            report: MachineReport {
+                answered_at: Time::ZERO,
+                position: Floor::new(0.3, 0.3),
+                velocity: Planar::ZERO,
+                current_amps: [0.5; 2],
+                drive: Drive::Released,
+                homing: Homing::NotHomed,
+            },
+            head: None,
+            machine_answers: true,
+        }
+    }
+
+    fn armed() -> Self {
+        let mut room = Self::new(None);
+        room.ask(RequestKind::Home);
+        room.run(0.5);
+        assert_eq!(room.engine.mode(), Mode::Ready);
+        room.ask(RequestKind::Arm);
+        room.run(0.1);
+        assert_eq!(room.engine.mode(), Mode::Following);
+        room
+    }
+
+    fn ask(&mut self, kind: RequestKind) -> Answer {
+        self.engine.request(self.now, Request::Machine(kind, Some("test".into())))
+    }
+
+    fn enter(&mut self, x: f64, y: f64, yaw_rad: f64) {
+        self.engine.observe(self.now, Observation::PersonEntered(VISITOR));
+        self.head = Some((x, y, yaw_rad));
+    }
+
+    fn run(&mut self, secs: f64) {
+        for _ in 0..(secs / PERIOD.secs()).round() as usize {
+            self.step();
+        }
+    }
+
+    fn step(&mut self) -> Vetted {
+        self.now += PERIOD;
+        if self.machine_answers {
+            self.report.answered_at = self.now;
+        }
+        self.engine.observe(self.now, Observation::Machine(self.report));
+        if let Some((x, y, yaw)) = self.head {
+            let orientation = UnitQuaternion::from_euler_angles(0.0, 0.0, yaw);
+            let pose = Pose { position: Point::new(x, y, 1.6), orientation };
+            let taken_at = self.now - Span::from_millis(20);
+            let sample = PoseSample { taken_at, pose, tracked: true, worn: true };
+            self.engine.observe(self.now, Observation::Pose(VISITOR, sample));
+        }
+        let command = self.engine.step(self.now);
+        self.report.drive = Drive::On;
+        match command.action() {
+            Action::Release => self.report.drive = Drive::Released,
+            Action::Home => {
+                let long = self.now - self.engine.mode_since > Span::from_millis(200);
+                self.report.homing = if long { Homing::Homed } else { Homing::Running };
+            }
+            Action::Hold => self.report.velocity = Planar::ZERO,
+            Action::Track(setpoint) => {
+                self.report.position = setpoint.position;
+                self.report.velocity = setpoint.velocity;
+            }
+        }
+        command
+    }
+
+    fn column(&self) -> Floor {
+        self.report.position
+    }
+}
+
+#[test]
+fn it_starts_disarmed_and_arms_only_after_homing() {
+    let mut room = Room::new(None);
+    room.run(0.1);
+    assert_eq!(room.engine.mode(), Mode::Disarmed);
+    assert_eq!(room.ask(RequestKind::Arm).outcome, Outcome::Refused);
+    assert_eq!(room.step().action(), Action::Release);
+}
+
+#[test]
+fn it_starts_latched_after_a_run_that_ended_so_and_reset_starts_nothing() {
+    let mut room = Room::new(Some("somebody pressed stop"));
+    room.run(0.1);
+    assert_eq!(room.engine.mode(), Mode::LatchedStop);
+    assert!(room.engine.snapshot(room.now).stop.unwrap().reason.contains("somebody pressed stop"));
+    assert_eq!(room.ask(RequestKind::Home).outcome, Outcome::Refused);
+    assert_eq!(room.ask(RequestKind::Reset).outcome, Outcome::Accepted);
+    room.run(0.1);
+    assert_eq!(room.engine.mode(), Mode::Disarmed);
+    assert_eq!(room.step().action(), Action::Release);
+}
+
+#[test]
+fn the_column_goes_to_what_the_visitor_looks_at() {
+    let mut room = Room::armed();
+    room.enter(2.0, 3.5, 0.0);
+    room.run(6.0);
+    assert!(room.column().distance_m(Floor::new(3.5, 3.5)) < 0.01, "stands at {:?}", room.column());
+    room.head = Some((2.0, 0.5, 0.0));
+    room.run(9.0);
+    assert!(room.column().distance_m(Floor::new(3.5, 0.5)) < 0.01, "stands at {:?}", room.column());
+}
+
+#[test]
+fn a_prior_moves_the_column() {
+    let mut room = Room::armed();
+    room.enter(1.0, 3.4, 2.5);
+    room.run(4.0);
+    let between = room.column();
+    let answer = room.engine.request(room.now, Request::SetPriors(vec![(0, 0.0), (1, 1.0)]));
+    assert_eq!(answer.outcome, Outcome::Accepted);
+    room.run(5.0);
+    assert!(room.column().distance_m(Floor::new(3.5, 0.5)) < 0.01, "from {between:?} to {:?}", room.column());
+    assert_eq!(room.engine.request(room.now, Request::SetPriors(vec![(0, 1.5)])).outcome, Outcome::Refused);
+    assert_eq!(room.engine.priors(), [0.0, 1.0]);
+}
+
+#[test]
+fn stop_brakes_then_releases_and_stays() {
+    let mut room = Room::armed();
+    room.enter(2.0, 3.5, 0.0);
+    room.run(1.0);
+    assert!(room.report.velocity.norm() > 0.2);
+    assert_eq!(room.ask(RequestKind::Stop).outcome, Outcome::Accepted);
+    assert_eq!(room.step().action(), Action::Hold, "the first command after the stop brakes");
+    room.run(0.3);
+    assert_eq!(room.step().action(), Action::Release);
+    room.run(5.0);
+    assert_eq!(room.engine.mode(), Mode::LatchedStop);
+    assert_eq!(room.ask(RequestKind::Arm).outcome, Outcome::Refused);
+}
+
+#[test]
+fn lost_tracking_is_a_protective_stop_that_clears_by_itself() {
+    let mut room = Room::armed();
+    room.enter(2.0, 3.5, 0.0);
+    room.run(1.0);
+    let head = room.head.take();
+    room.run(0.6);
+    assert_eq!(room.engine.mode(), Mode::ProtectiveStop);
+    assert_eq!(room.engine.snapshot(room.now).stop.unwrap().rule, RuleId(2));
+    room.run(1.0);
+    assert_eq!(room.report.velocity, Planar::ZERO);
+    room.head = head;
+    room.run(0.9);
+    assert_eq!(room.engine.mode(), Mode::ProtectiveStop, "not before 1 s");
+    room.run(0.2);
+    assert_eq!(room.engine.mode(), Mode::Following);
+}
+
+#[test]
+fn a_changed_origin_waits_for_the_game_master() {
+    let mut room = Room::armed();
+    room.enter(2.0, 3.5, 0.0);
+    room.run(0.5);
+    room.engine.observe(room.now, Observation::OriginChanged(VISITOR));
+    room.run(5.0);
+    assert_eq!(room.engine.mode(), Mode::ProtectiveStop);
+    assert_eq!(room.engine.request(room.now, Request::ConfirmOrigin(VISITOR)).outcome, Outcome::Accepted);
+    room.run(1.1);
+    assert_eq!(room.engine.mode(), Mode::Following);
+}
+
+#[test]
+fn a_gone_client_is_lost_tracking_and_a_person_who_left_is_not() {
+    let mut room = Room::armed();
+    room.enter(2.0, 3.5, 0.0);
+    room.run(0.5);
+    room.engine.observe(room.now, Observation::ClientGone(VISITOR));
+    room.run(0.1);
+    assert_eq!(room.engine.snapshot(room.now).stop.unwrap().rule, RuleId(10));
+    room.engine.observe(room.now, Observation::PersonLeft(VISITOR));
+    room.head = None;
+    room.run(1.1);
+    assert_eq!(room.engine.mode(), Mode::Following);
+}
+
+#[test]
+fn a_silent_machine_is_a_fault_that_reset_leaves_only_when_it_answers() {
+    let mut room = Room::armed();
+    room.machine_answers = false;
+    room.run(0.15);
+    assert_eq!(room.engine.mode(), Mode::Faulted);
+    assert_eq!(room.ask(RequestKind::Reset).outcome, Outcome::Refused);
+    room.machine_answers = true;
+    room.run(0.1);
+    assert_eq!(room.ask(RequestKind::Reset).outcome, Outcome::Accepted);
+    assert_eq!(room.engine.mode(), Mode::Disarmed);
+}
+
+#[test]
+fn over_current_and_a_straying_machine_latch() {
+    let mut room = Room::armed();
+    room.report.current_amps = [5.5, 0.0];
+    room.run(0.05);
+    assert_eq!(room.engine.snapshot(room.now).stop.unwrap().rule, RuleId(5));
+
+    let mut room = Room::armed();
+    room.enter(2.0, 3.5, 0.0);
+    room.run(0.5);
+    for _ in 0..60 {
+        let stuck = room.report.position;
+        room.step();
+        room.report.position = Floor::new(stuck.x.min(0.5), stuck.y.min(0.5));
+    }
+    let rule = room.engine.snapshot(room.now).stop.unwrap().rule;
+    assert!(rule == RuleId(6) || rule == RuleId(7), "{rule:?}");
+}
+
+#[test]
+fn three_missed_deadlines_in_a_row_are_a_protective_stop() {
+    let mut room = Room::armed();
+    for _ in 0..2 {
+        room.engine.observe(room.now, Observation::DeadlineMissed);
+    }
+    room.engine.observe(room.now, Observation::DeadlineMet);
+    room.engine.observe(room.now, Observation::DeadlineMissed);
+    room.step();
+    assert_eq!(room.engine.mode(), Mode::Following);
+    for _ in 0..2 {
+        room.engine.observe(room.now, Observation::DeadlineMissed);
+    }
+    room.step();
+    assert_eq!(room.engine.snapshot(room.now).stop.unwrap().rule, RuleId(9));
+}
+
+#[test]
+fn homing_waits_for_somebody_near() {
+    let mut room = Room::new(None);
+    room.enter(0.6, 0.6, 0.0);
+    room.run(0.1);
+    room.ask(RequestKind::Home);
+    assert_eq!(room.step().action(), Action::Hold);
+    room.head = Some((3.0, 3.0, 0.0));
+    // A jump: not believed for a second, then a second more until the protective stop clears.
+    room.run(3.0);
+    assert_eq!(room.engine.mode(), Mode::Ready);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// The plain rule, by its own arithmetic, for a person who walks straight at the column from anywhere.
+    #[test]
+    fn nobody_who_walks_at_the_column_meets_it_moving(
+        x in 0.2..3.8f64, y in 0.2..3.8f64, pace in 0.1..1.6f64, wait in 0.0..3.0f64, yaw in -3.1..3.1f64,
+    ) {
+        let mut room = Room::armed();
+        prop_assume!(room.column().distance_m(Floor::new(x, y)) > 1.0);
+        room.enter(x, y, yaw);
+        room.run(wait);
+        for _ in 0..1500 {
+            let (hx, hy, _) = room.head.unwrap();
+            let to_column = room.column() - Floor::new(hx, hy);
+            let ahead = to_column.unit().unwrap_or(Planar::ZERO) * (pace * PERIOD.secs());
+            room.head = Some((hx + ahead.x, hy + ahead.y, yaw));
+            room.step();
+            let speed = room.report.velocity.norm();
+            let brake_secs = room.report.velocity.x.abs().max(room.report.velocity.y.abs()) / 2.5;
+            let gap = Planar::new(
+                ((room.column().x - hx).abs() - 0.075).max(0.0),
+                ((room.column().y - hy).abs() - 0.075).max(0.0),
+            ).norm();
+            let retreats = room.report.velocity.dot(to_column) > 0.0 && speed <= 0.3;
+            prop_assert!(
+                speed < 1e-3 || retreats || gap > 0.25 + 1.6 * brake_secs,
+                "{speed} m/s at {gap} m",
+            );
+        }
+    }
+}

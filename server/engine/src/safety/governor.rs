@@ -1,0 +1,111 @@
+//! The governor: turns wanted velocities into the next commanded state, or into braking.
+//!
+//! It takes the first proposal whose next state separation certifies. When none is, it brakes each axis at its limit:
+//! the path that was certified one step before, so the brake needs nobody's leave. A person who has moved since has
+//! moved within what the certificate allowed for.
+
+use crate::frames::{Floor, Planar};
+use crate::machine::Limits;
+use crate::safety::path::{AxisPath, BrakePath, State};
+use crate::safety::separation::{Conflict, Separation};
+use crate::safety::vetted::{Action, Setpoint, Vetted};
+use crate::time::{Span, Time};
+
+/// The state last commanded to the machine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Governor {
+    commanded: State,
+}
+
+/// What became of the proposals.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Choice {
+    /// The proposal taken; none: it brakes.
+    pub taken: Option<usize>,
+    /// Why the first proposal was not.
+    pub conflict: Option<Conflict>,
+}
+
+impl Governor {
+    /// At rest where the machine stands.
+    pub fn at_rest(place: Floor) -> Self {
+        Self { commanded: State::at_rest(place) }
+    }
+
+    /// Move on by one period with the first allowed of `proposals` (velocities, best first), else brake.
+    pub fn govern(
+        &mut self,
+        proposals: &[Planar],
+        measured: &State,
+        separation: &Separation<'_>,
+        period: Span,
+    ) -> Choice {
+        if let Err(conflict) = separation.certify_measured(measured) {
+            self.brake(separation.limits, period);
+            return Choice { taken: None, conflict: Some(conflict) };
+        }
+        let mut first_conflict = None;
+        for (index, velocity) in proposals.iter().enumerate() {
+            let next = self.towards(*velocity, separation.limits, period);
+            match separation.certify(&next) {
+                Ok(()) => {
+                    self.commanded = next;
+                    return Choice { taken: Some(index), conflict: first_conflict };
+                }
+                Err(conflict) => first_conflict = first_conflict.or(Some(conflict)),
+            }
+        }
+        self.brake(separation.limits, period);
+        Choice { taken: None, conflict: first_conflict }
+    }
+
+    /// Brake along the path where that is certified, else at the limit of each axis.
+    pub fn protective_brake(&mut self, separation: &Separation<'_>, period: Span) {
+        let State { x, y } = self.commanded;
+        let fastest = x.v.abs().max(y.v.abs()).max(f64::MIN_POSITIVE);
+        let share = |v: f64| (v.abs() / fastest).max(LEAST_SHARE);
+        let along = State {
+            x: AxisPath::brake_with_share(x, &separation.limits.x, share(x.v)).at(period.secs()),
+            y: AxisPath::brake_with_share(y, &separation.limits.y, share(y.v)).at(period.secs()),
+        };
+        match separation.certify(&along) {
+            Ok(()) => self.commanded = along,
+            Err(_) => self.brake(separation.limits, period),
+        }
+    }
+
+    /// Brake each axis at its limit.
+    pub fn brake(&mut self, limits: &Limits, period: Span) {
+        self.commanded = BrakePath::now(&self.commanded, limits).at(period.secs());
+    }
+
+    /// The state last commanded.
+    pub fn commanded(&self) -> &State {
+        &self.commanded
+    }
+
+    /// The command for it, valid for `valid_for`.
+    pub fn command(&self, now: Time, valid_for: Span) -> Vetted {
+        Vetted::new(
+            now,
+            Action::Track(Setpoint {
+                position: self.commanded.position(),
+                velocity: self.commanded.velocity(),
+                acceleration: self.commanded.acceleration(),
+                valid_for,
+            }),
+        )
+    }
+
+    fn towards(&self, velocity: Planar, limits: &Limits, period: Span) -> State {
+        let cap = |v: f64, most: f64| v.clamp(-most, most);
+        let State { x, y } = self.commanded;
+        State {
+            x: AxisPath::to_velocity(x, cap(velocity.x, limits.x.speed_mps), &limits.x).at(period.secs()),
+            y: AxisPath::to_velocity(y, cap(velocity.y, limits.y.speed_mps), &limits.y).at(period.secs()),
+        }
+    }
+}
+
+/// The slower axis keeps at least this share of its braking, so that both come to rest.
+const LEAST_SHARE: f64 = 0.1;

@@ -1,0 +1,385 @@
+//! The supervisor: watches every rule each step and says what they demand. It moves nothing by itself.
+//!
+//! ```text
+//!   rule kept ──breach──▶ breached ──kept again──▶ kept        each change is an event
+//!   demand: none < protective stop (R2 R9 R10 R15) < latched stop (R1 R5 R6 R7) < fault (R8, homing failed)
+//! ```
+
+use crate::event::EventKind;
+use crate::frames::Floor;
+use crate::machine::{Homing, MachineReport, Travel};
+use crate::person::{Lost, Person};
+use crate::safety::parameters::Parameters;
+use crate::safety::path::State;
+use crate::safety::separation::{Conflict, Obstacle};
+use crate::snapshot::{RuleId, RuleState, RuleStatus};
+use crate::time::{Span, Time};
+
+/// What the supervisor looks at in one step.
+#[derive(Debug, Clone, Copy)]
+pub struct Watched<'a> {
+    /// When.
+    pub now: Time,
+    /// The machine's newest report; none before the first.
+    pub report: Option<&'a MachineReport>,
+    /// The state last commanded, while the machine is told to track it.
+    pub tracking: Option<&'a State>,
+    /// The machine is being homed.
+    pub homes: bool,
+    /// Everybody in the arena.
+    pub persons: &'a [Person],
+    /// Somebody who looked said that nobody is in the arena.
+    pub arena_confirmed_clear: bool,
+    /// The machine's travel.
+    pub travel: &'a Travel,
+}
+
+/// What the rules demand, the gravest first in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Demand {
+    /// Brake and hold until the cause has been gone for a while.
+    ProtectiveStop(RuleId),
+    /// Brake, release, and wait for a reset.
+    LatchedStop(RuleId),
+    /// The machine cannot be trusted to obey.
+    Fault(RuleId),
+}
+
+/// Watches R1 to R16.
+#[derive(Debug, Clone)]
+pub struct Supervisor {
+    parameters: Parameters,
+    rules: Vec<RuleState>,
+    missed_in_a_row: u32,
+    over_current: Held,
+    following_error: Held,
+    velocity_error: Held,
+    stall: Option<(Time, Floor, Floor)>,
+}
+
+/// A condition that must hold for a while before it counts.
+#[derive(Debug, Clone, Copy, Default)]
+struct Held {
+    since: Option<Time>,
+}
+
+impl Supervisor {
+    /// Every rule idle.
+    pub fn new(parameters: Parameters) -> Self {
+        let idle = |n| RuleState {
+            rule: RuleId(n),
+            status: RuleStatus::Idle,
+            reason: IDLE.to_owned(),
+            since: Time::ZERO,
+        };
+        Self {
+            parameters,
+            rules: (1..=16).map(idle).collect(),
+            missed_in_a_row: 0,
+            over_current: Held::default(),
+            following_error: Held::default(),
+            velocity_error: Held::default(),
+            stall: None,
+        }
+    }
+
+    /// A step began late, or in time (R9).
+    pub fn deadline(&mut self, met: bool) {
+        self.missed_in_a_row = if met { 0 } else { self.missed_in_a_row.saturating_add(1) };
+    }
+
+    /// Look at everything; the gravest demand.
+    pub fn watch(&mut self, watched: &Watched<'_>, events: &mut Vec<EventKind>) -> Option<Demand> {
+        self.watch_machine(watched, events);
+        self.watch_people(watched, events);
+        let missed = self.missed_in_a_row;
+        let late = missed >= self.parameters.missed_deadlines;
+        self.set(RuleId(9), breach_if(late), watched.now, events, || {
+            if late {
+                format!("{missed} control steps in a row began late")
+            } else {
+                "control steps begin in time".into()
+            }
+        });
+        self.rules.iter().filter(|r| r.status == RuleStatus::Breached).filter_map(|r| demand(r.rule)).max()
+    }
+
+    /// What separation did this step (R1, R3, R13): in the way of the wanted motion or not.
+    pub fn separation(&mut self, conflict: Option<Conflict>, now: Time, events: &mut Vec<EventKind>) {
+        let with = conflict.map(|c| c.with);
+        let status = |limits: bool| if limits { RuleStatus::Limiting } else { RuleStatus::Clear };
+        let words = |what: String| {
+            move || {
+                conflict.map_or_else(String::new, |c| {
+                    format!(
+                        "slowed or turned for {what}: {:.2} m on the way, {:.2} m needed",
+                        c.distance_m, c.required_m
+                    )
+                })
+            }
+        };
+        match with {
+            Some(Obstacle::Person(id)) => {
+                self.set(RuleId(3), status(true), now, events, words(format!("person {}", id.0)));
+            }
+            _ => self.set(RuleId(3), status(false), now, events, || "nobody in the way".into()),
+        }
+        match with {
+            Some(Obstacle::KeepOut(index)) => {
+                self.set(
+                    RuleId(13),
+                    status(true),
+                    now,
+                    events,
+                    words(format!("keep-out shape {}", index + 1)),
+                );
+            }
+            _ => self.set(RuleId(13), status(false), now, events, || "no keep-out shape in the way".into()),
+        }
+        if with == Some(Obstacle::Travel) {
+            self.set(RuleId(1), RuleStatus::Limiting, now, events, || {
+                "slowed at the end of the travel".into()
+            });
+        }
+    }
+
+    /// Separation is not asked now: nothing is wanted.
+    pub fn separation_idle(&mut self, now: Time, events: &mut Vec<EventKind>) {
+        for rule in [3, 13] {
+            self.set(RuleId(rule), RuleStatus::Idle, now, events, || IDLE.into());
+        }
+    }
+
+    /// The software stop was pressed, or reset (R4).
+    pub fn software_stop(&mut self, pressed: bool, reason: &str, now: Time, events: &mut Vec<EventKind>) {
+        self.set(RuleId(4), breach_if(pressed), now, events, || reason.to_owned());
+    }
+
+    /// Forget what counts towards R5, R6 and R7: the commanded state was taken anew from the measured one.
+    pub fn tracking_restarted(&mut self) {
+        self.over_current = Held::default();
+        self.following_error = Held::default();
+        self.velocity_error = Held::default();
+        self.stall = None;
+    }
+
+    /// Every rule, R1 first.
+    pub fn rules(&self) -> &[RuleState] {
+        &self.rules
+    }
+
+    /// One rule.
+    pub fn rule(&self, rule: RuleId) -> &RuleState {
+        &self.rules[usize::from(rule.0) - 1]
+    }
+
+    /// Why a latched stop or a fault cannot be left: a rule that led to one is breached now. R4 clears by the reset itself.
+    pub fn cause_still_there(&self) -> Option<String> {
+        let grave = |r: &&RuleState| {
+            r.status == RuleStatus::Breached
+                && r.rule != RuleId(4)
+                && matches!(demand(r.rule), Some(Demand::LatchedStop(_) | Demand::Fault(_)))
+        };
+        self.rules.iter().find(grave).map(|r| format!("{}: {}", r.rule.name(), r.reason))
+    }
+
+    fn watch_machine(&mut self, watched: &Watched<'_>, events: &mut Vec<EventKind>) {
+        let now = watched.now;
+        let Some(report) = watched.report else {
+            self.set(RuleId(8), RuleStatus::Idle, now, events, || "the machine has not answered yet".into());
+            return;
+        };
+        let p = self.parameters;
+        let silence = now - report.answered_at;
+        let dead = silence > p.link;
+        self.set(RuleId(8), breach_if(dead), now, events, || {
+            let millis = silence.micros() / 1000;
+            if dead { format!("no good answer for {millis} ms") } else { "the controller answers".into() }
+        });
+        let homed = report.homing == Homing::Homed;
+        let beyond = if homed { -watched.travel.depth_m(report.position) } else { 0.0 };
+        self.set(RuleId(1), breach_if(beyond > BEYOND_TRAVEL_M), now, events, || {
+            if beyond > BEYOND_TRAVEL_M {
+                format!("the column is {:.1} cm past its travel", beyond * 100.0)
+            } else {
+                "inside the travel".into()
+            }
+        });
+        let amps = report.current_amps[0].max(report.current_amps[1]);
+        let over = self.over_current.for_at_least(amps > p.current_amps, now, p.current_for);
+        self.set(RuleId(5), breach_if(over), now, events, || {
+            format!("{amps:.1} A against a limit of {:.1} A", p.current_amps)
+        });
+        self.watch_tracking(watched, report, events);
+    }
+
+    fn watch_tracking(&mut self, watched: &Watched<'_>, report: &MachineReport, events: &mut Vec<EventKind>) {
+        let (now, p) = (watched.now, self.parameters);
+        let failed = watched.homes && report.homing == Homing::Failed;
+        let Some(commanded) = watched.tracking.filter(|_| report.homing == Homing::Homed) else {
+            self.tracking_restarted();
+            // With the drive let go there is nothing to follow; what was breached stays so until the reset looks again.
+            self.set(RuleId(6), RuleStatus::Idle, now, events, || IDLE.into());
+            self.set(
+                RuleId(7),
+                if failed { RuleStatus::Breached } else { RuleStatus::Idle },
+                now,
+                events,
+                || {
+                    if failed { "homing found no switch".into() } else { IDLE.into() }
+                },
+            );
+            return;
+        };
+        let error = commanded.position().distance_m(report.position);
+        let strays =
+            self.following_error.for_at_least(error > p.following_error_m, now, p.following_error_for);
+        self.set(RuleId(6), breach_if(strays), now, events, || {
+            format!("{:.1} cm behind the command", error * 100.0)
+        });
+
+        let difference = (commanded.velocity() - report.velocity).norm();
+        let runs =
+            self.velocity_error.for_at_least(difference > p.velocity_error_mps, now, p.velocity_error_for);
+        let stalled = self.stalled(now, commanded, report.position);
+        self.set(RuleId(7), breach_if(runs || stalled), now, events, || match (runs, stalled) {
+            (true, _) => format!("moves {difference:.2} m/s otherwise than commanded"),
+            (_, true) => "commanded and does not move".into(),
+            _ => "moves as commanded".into(),
+        });
+    }
+
+    /// Over the last window the command went on and the machine did not.
+    fn stalled(&mut self, now: Time, commanded: &State, measured: Floor) -> bool {
+        let (since, from_commanded, from_measured) =
+            *self.stall.get_or_insert((now, commanded.position(), measured));
+        let asked = commanded.position().distance_m(from_commanded);
+        let moved = measured.distance_m(from_measured);
+        if now - since > STALL_WINDOW {
+            self.stall = Some((now, commanded.position(), measured));
+        }
+        asked > STALL_ASKED_M && moved < STALL_MOVED_M
+    }
+
+    fn watch_people(&mut self, watched: &Watched<'_>, events: &mut Vec<EventKind>) {
+        let (now, p) = (watched.now, self.parameters);
+        let mut lost = [None, None, None];
+        for person in watched.persons {
+            let rule = match person.lost(now, &p) {
+                None if person.awaits_confirmation() => 2,
+                None => continue,
+                Some(Lost::ClientGone) => 1,
+                Some(Lost::NotWorn) => 2,
+                Some(_) => 0,
+            };
+            lost[rule].get_or_insert(person);
+        }
+        let nobody = watched.persons.is_empty();
+        for (rule, who) in [(2, lost[0]), (10, lost[1]), (15, lost[2])] {
+            let status = match who {
+                Some(_) => RuleStatus::Breached,
+                None if nobody => RuleStatus::Idle,
+                None => RuleStatus::Clear,
+            };
+            self.set(RuleId(rule), status, now, events, || match who {
+                Some(person) => lost_in_words(person, now, &p),
+                None if nobody => "nobody in the arena".into(),
+                None => "everybody's headset is tracked".into(),
+            });
+        }
+        let unsure = nobody && !watched.arena_confirmed_clear;
+        let status = if unsure { RuleStatus::Limiting } else { RuleStatus::Clear };
+        self.set(RuleId(16), status, now, events, || {
+            if unsure {
+                "nobody is tracked and nobody has confirmed that the arena is clear: no motion by itself"
+                    .into()
+            } else {
+                "people are tracked, or the arena was confirmed clear".into()
+            }
+        });
+    }
+
+    fn set(
+        &mut self,
+        rule: RuleId,
+        status: RuleStatus,
+        now: Time,
+        events: &mut Vec<EventKind>,
+        reason: impl FnOnce() -> String,
+    ) {
+        let state = &mut self.rules[usize::from(rule.0) - 1];
+        // The numbers of a rule that shapes the motion change from step to step.
+        if state.status == status && status != RuleStatus::Limiting {
+            return;
+        }
+        let before = state.status;
+        state.reason = reason();
+        if before == status {
+            return;
+        }
+        state.status = status;
+        state.since = now;
+        if status == RuleStatus::Breached {
+            events.push(EventKind::RuleBreached { rule, reason: state.reason.clone() });
+        } else if before == RuleStatus::Breached {
+            events.push(EventKind::RuleCleared { rule });
+        }
+    }
+}
+
+impl Held {
+    fn for_at_least(&mut self, condition: bool, now: Time, span: Span) -> bool {
+        self.since = if condition { self.since.or(Some(now)) } else { None };
+        self.since.is_some_and(|since| now - since >= span)
+    }
+}
+
+/// What a breach of the rule demands; none for rules that only shape the motion.
+pub fn demand(rule: RuleId) -> Option<Demand> {
+    match rule.0 {
+        2 | 9 | 10 | 15 => Some(Demand::ProtectiveStop(rule)),
+        1 | 4 | 5 | 6 | 7 => Some(Demand::LatchedStop(rule)),
+        8 => Some(Demand::Fault(rule)),
+        _ => None,
+    }
+}
+
+/// What clears a stop by this rule, in plain words.
+pub fn clears_when(rule: RuleId) -> &'static str {
+    match rule.0 {
+        2 => "clears by itself 1 s after every headset is tracked again",
+        9 => "clears by itself 1 s after the control loop keeps its deadlines again",
+        10 => "clears by itself 1 s after the VR client is back and its headset is tracked",
+        15 => "clears 1 s after the game master confirms the person on the floor mark",
+        8 => "reset, with a reason, once the controller answers again; then home and arm",
+        1 => "move the column back by hand, then reset with a reason; then arm",
+        _ => "reset, with a reason, once the cause is gone; then arm",
+    }
+}
+
+fn breach_if(breached: bool) -> RuleStatus {
+    if breached { RuleStatus::Breached } else { RuleStatus::Clear }
+}
+
+fn lost_in_words(person: &Person, now: Time, parameters: &Parameters) -> String {
+    let id = person.id().0;
+    match person.lost(now, parameters) {
+        Some(Lost::NoPoseYet) => format!("person {id} has entered and sent no pose yet"),
+        Some(Lost::TooOld(secs)) => format!("the newest pose of person {id} is {secs:.2} s old"),
+        Some(Lost::Untracked) => format!("the headset of person {id} does not know its place"),
+        Some(Lost::NotWorn) => format!("person {id} took the headset off"),
+        Some(Lost::Jumped) => format!("the pose of person {id} jumped faster than a head can move"),
+        Some(Lost::ClientGone) => format!("the VR client of person {id} is gone"),
+        None => format!("person {id} must be confirmed on the floor mark: the tracking origin changed"),
+    }
+}
+
+const IDLE: &str = "nothing to watch now";
+/// Measurement noise and the machine's overshoot past the travel, m.
+const BEYOND_TRAVEL_M: f64 = 0.01;
+/// R7: looked at over windows of this length.
+const STALL_WINDOW: Span = Span::from_millis(500);
+/// R7: the command went this far in the window, m.
+const STALL_ASKED_M: f64 = 0.03;
+/// R7: and the machine less than this, m.
+const STALL_MOVED_M: f64 = 0.003;
