@@ -11,6 +11,7 @@
 mod check;
 mod decode;
 mod error;
+mod outgoing;
 mod pace;
 mod to_client;
 
@@ -19,6 +20,7 @@ use ts_rs::TS;
 
 pub use decode::{DecodeFailed, decode, decode_from_server};
 pub use error::{ClientError, ErrorCode};
+pub use outgoing::POSE_RATE_HZ;
 pub use pace::{AbuseGauge, OutOfOrder, Sequencer, Verdict};
 pub use to_client::{
     ActiveScene, ClientLimits, ClockPong, ColumnNow, ObjectPlace, Prediction, PropAt, StopState, ToClient,

@@ -6,8 +6,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use covr_wire::client::{FromClient, ToClient};
 use covr_wire::dashboard::{FromDashboard, ToDashboard};
-use covr_wire::scene::SceneDocument;
+use covr_wire::scene::{SceneDocument, SceneError};
 use ts_rs::{Config, TS};
 
 #[test]
@@ -32,6 +33,9 @@ fn generate() -> BTreeMap<String, String> {
     FromDashboard::export_all(&config).expect("dashboard requests");
     ToDashboard::export_all(&config).expect("dashboard messages");
     SceneDocument::export_all(&config).expect("scenes");
+    SceneError::export_all(&config).expect("scene errors");
+    FromClient::export_all(&config).expect("client messages");
+    ToClient::export_all(&config).expect("messages to clients");
     let mut files = read(out.path());
     let index: String = files
         .keys()
