@@ -1,0 +1,96 @@
+//! The host's half of the PIV scheme: a proportional position loop that turns setpoints into speeds for the
+//! controller, with the setpoint's velocity and acceleration fed forward.
+//!
+//! It knows only what the controller last reported.
+
+use covr_engine::machine::MachineReport;
+use covr_engine::safety::vetted::Setpoint;
+use covr_engine::time::Time;
+
+use super::controller::{Packet, TICK_MICROS};
+use super::parameters::MachineParameters;
+use super::settle::Settler;
+
+/// The position loops of both axes.
+#[derive(Debug, Clone)]
+pub(super) struct Host {
+    position_gain_per_s: f64,
+    most_ramp_mps2: [f64; 2],
+    settlers: [Settler; 2],
+    last: Option<Sent>,
+}
+
+/// What was sent last.
+#[derive(Debug, Clone, Copy)]
+struct Sent {
+    at: Time,
+    target_mps: [f64; 2],
+}
+
+impl Host {
+    pub(super) fn new(machine: &MachineParameters) -> Self {
+        let ramp = |braking: f64| RAMP_OVER_BRAKING * braking;
+        Self {
+            position_gain_per_s: machine.tuning.position_gain_per_s,
+            most_ramp_mps2: [ramp(machine.limits.x.braking_mps2), ramp(machine.limits.y.braking_mps2)],
+            settlers: [Settler::default(); 2],
+            last: None,
+        }
+    }
+
+    /// Whatever was tracked is over.
+    pub(super) fn forget(&mut self) {
+        self.last = None;
+        self.settlers = [Settler::default(); 2];
+    }
+
+    /// Speeds to reach at the end of the period that begins `now`, and ramps that reach them just then.
+    pub(super) fn follow(
+        &mut self,
+        now: Time,
+        vetted_at: Time,
+        setpoint: &Setpoint,
+        report: &MachineReport,
+    ) -> Packet {
+        let since_vetted = (now - vetted_at).secs().clamp(0.0, MOST_PERIOD_SECS);
+        let since_report = (now - report.answered_at).secs().clamp(0.0, setpoint.valid_for.secs().max(0.0));
+        let period = match self.last {
+            Some(sent) => (now - sent.at).secs().clamp(LEAST_PERIOD_SECS, MOST_PERIOD_SECS),
+            None => USUAL_PERIOD_SECS,
+        };
+        let axes = [
+            (setpoint.position.x, setpoint.velocity.x, setpoint.acceleration.x),
+            (setpoint.position.y, setpoint.velocity.y, setpoint.acceleration.y),
+        ];
+        let measured = [(report.position.x, report.velocity.x), (report.position.y, report.velocity.y)];
+        let mut target_mps = [0.0; 2];
+        let mut ramp_mps2 = [0.0; 2];
+        for i in 0..2 {
+            let (position, velocity, acceleration) = axes[i];
+            let (measured_m, measured_mps) = measured[i];
+            let here_m = measured_m + measured_mps * since_report;
+            let error_m = position + velocity * since_vetted - here_m;
+            if !self.settlers[i].is_settled(velocity, measured_mps, error_m) {
+                let correction = (self.position_gain_per_s * error_m).clamp(-CORRECTION_MPS, CORRECTION_MPS);
+                target_mps[i] = velocity + acceleration * (since_vetted + period) + correction;
+            }
+            let before = self.last.map_or(measured_mps, |sent| sent.target_mps[i]);
+            ramp_mps2[i] =
+                ((target_mps[i] - before).abs() / period).clamp(LEAST_RAMP_MPS2, self.most_ramp_mps2[i]);
+        }
+        self.last = Some(Sent { at: now, target_mps });
+        let ticks = (setpoint.valid_for.micros() / TICK_MICROS).clamp(0, i64::from(u32::MAX));
+        Packet::Speeds { target_mps, ramp_mps2, ticks: ticks as u32 }
+    }
+}
+
+/// The controller may ramp this much faster than the axis brakes, for corrections on top of the reference.
+const RAMP_OVER_BRAKING: f64 = 2.0;
+/// So that a speed that changes by next to nothing is still reached.
+const LEAST_RAMP_MPS2: f64 = 0.1;
+/// The most that the position loop adds to the speed fed forward, m/s.
+const CORRECTION_MPS: f64 = 0.25;
+/// Until two setpoints have told.
+const USUAL_PERIOD_SECS: f64 = 0.004;
+const LEAST_PERIOD_SECS: f64 = 0.001;
+const MOST_PERIOD_SECS: f64 = 0.02;
