@@ -32,7 +32,7 @@ pub(super) struct AxisController {
 enum Motion {
     /// Bridge open.
     Released,
-    /// Ramp to a speed; `ticks_left` until the dead-man brakes.
+    /// Ramp to a speed, no faster than the axis may; `ticks_left` until the dead-man brakes.
     Speed { target_mps: f64, ramp_mps2: f64, ticks_left: u32 },
     /// Brake to rest along a reference of its own.
     Brake { reference_m: f64 },
@@ -105,6 +105,13 @@ impl AxisController {
         self.motion = Motion::Speed { target_mps, ramp_mps2, ticks_left: ticks };
     }
 
+    /// As [`Self::go`], with the ramp that gets there in `reach_secs`, from wherever the axis is by now.
+    fn reach(&mut self, target_mps: f64, reach_secs: f64, ticks: u32) {
+        self.power_up();
+        let ramp_mps2 = (target_mps - self.ramp.speed_mps).abs() / reach_secs;
+        self.go(target_mps, ramp_mps2, ticks);
+    }
+
     /// Brake to rest and hold there. Does nothing to an axis that brakes or holds already.
     pub(super) fn brake(&mut self) {
         self.power_up();
@@ -138,7 +145,7 @@ impl AxisController {
                     self.braking(self.measured_m)
                 } else {
                     self.motion = Motion::Speed { target_mps, ramp_mps2, ticks_left: ticks_left - 1 };
-                    self.ramp.towards(target_mps, ramp_mps2)
+                    self.ramp.towards(target_mps, ramp_mps2, &self.limits)
                 }
             }
             Motion::Brake { reference_m } => self.braking(reference_m),
@@ -215,9 +222,12 @@ impl AxisController {
 }
 
 impl Ramp {
-    fn towards(&mut self, target_mps: f64, ramp_mps2: f64) -> f64 {
-        let most = ramp_mps2 * TICK_SECS;
-        let change = (target_mps - self.speed_mps).clamp(-most, most);
+    fn towards(&mut self, target_mps: f64, ramp_mps2: f64, limits: &AxisLimits) -> f64 {
+        let wanted = target_mps - self.speed_mps;
+        let is_slowing = wanted * self.speed_mps < 0.0;
+        let limit_mps2 = if is_slowing { limits.braking_mps2 } else { limits.acceleration_mps2 };
+        let most = ramp_mps2.min(CORRECTION_MARGIN * limit_mps2) * TICK_SECS;
+        let change = wanted.clamp(-most, most);
         self.speed_mps += change;
         self.acceleration_mps2 = change / TICK_SECS;
         self.speed_mps
@@ -260,10 +270,10 @@ pub(super) enum Packet {
     Release,
     Brake,
     Home,
-    /// Speeds and ramps of both axes, good for so many ticks.
+    /// Speeds of both axes, when they are to be reached, and for how many ticks they are good.
     Speeds {
         target_mps: [f64; 2],
-        ramp_mps2: [f64; 2],
+        reach_secs: f64,
         ticks: u32,
     },
 }
@@ -301,10 +311,10 @@ impl Controller {
                 self.homing = Homing::Running;
                 self.sequences = [HomingAxis::default(); 2];
             }
-            Packet::Speeds { target_mps, ramp_mps2, ticks } => {
+            Packet::Speeds { target_mps, reach_secs, ticks } => {
                 self.drive = Drive::On;
-                for (i, axis) in self.axes.iter_mut().enumerate() {
-                    axis.go(target_mps[i], ramp_mps2[i], ticks);
+                for (axis, target_mps) in self.axes.iter_mut().zip(target_mps) {
+                    axis.reach(target_mps, reach_secs, ticks);
                 }
             }
         }
@@ -378,6 +388,8 @@ pub(super) const TICK_MICROS: i64 = 1_000;
 pub(super) const TICK_SECS: f64 = TICK_MICROS as f64 * 1e-6;
 /// Speed is measured over this many ticks: one count in it is 2.7 mm/s.
 const WINDOW_TICKS: usize = 8;
+/// A ramp may be this much steeper than the axis limits, for corrections on top of a reference at its limits.
+const CORRECTION_MARGIN: f64 = 1.2;
 /// Below this a brake has come to rest.
 const REST_MPS: f64 = 1e-3;
 /// How fast a displaced axis returns to the place that it holds.

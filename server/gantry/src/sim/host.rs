@@ -15,36 +15,28 @@ use super::settle::Settler;
 #[derive(Debug, Clone)]
 pub(super) struct Host {
     position_gain_per_s: f64,
-    most_ramp_mps2: [f64; 2],
+    most_mps: [f64; 2],
     settlers: [Settler; 2],
-    last: Option<Sent>,
-}
-
-/// What was sent last.
-#[derive(Debug, Clone, Copy)]
-struct Sent {
-    at: Time,
-    target_mps: [f64; 2],
+    last_at: Option<Time>,
 }
 
 impl Host {
     pub(super) fn new(machine: &MachineParameters) -> Self {
-        let ramp = |braking: f64| RAMP_OVER_BRAKING * braking;
         Self {
             position_gain_per_s: machine.tuning.position_gain_per_s,
-            most_ramp_mps2: [ramp(machine.limits.x.braking_mps2), ramp(machine.limits.y.braking_mps2)],
+            most_mps: [machine.limits.x.speed_mps, machine.limits.y.speed_mps].map(|most| OVERSPEED * most),
             settlers: [Settler::default(); 2],
-            last: None,
+            last_at: None,
         }
     }
 
     /// Whatever was tracked is over.
     pub(super) fn forget(&mut self) {
-        self.last = None;
+        self.last_at = None;
         self.settlers = [Settler::default(); 2];
     }
 
-    /// Speeds to reach at the end of the period that begins `now`, and ramps that reach them just then.
+    /// Speeds to reach at the end of the period that begins `now`.
     pub(super) fn follow(
         &mut self,
         now: Time,
@@ -54,8 +46,8 @@ impl Host {
     ) -> Packet {
         let since_vetted = (now - vetted_at).secs().clamp(0.0, MOST_PERIOD_SECS);
         let since_report = (now - report.answered_at).secs().clamp(0.0, setpoint.valid_for.secs().max(0.0));
-        let period = match self.last {
-            Some(sent) => (now - sent.at).secs().clamp(LEAST_PERIOD_SECS, MOST_PERIOD_SECS),
+        let period = match self.last_at {
+            Some(last_at) => (now - last_at).secs().clamp(LEAST_PERIOD_SECS, MOST_PERIOD_SECS),
             None => USUAL_PERIOD_SECS,
         };
         let axes = [
@@ -64,7 +56,6 @@ impl Host {
         ];
         let measured = [(report.position.x, report.velocity.x), (report.position.y, report.velocity.y)];
         let mut target_mps = [0.0; 2];
-        let mut ramp_mps2 = [0.0; 2];
         for i in 0..2 {
             let (position, velocity, acceleration) = axes[i];
             let (measured_m, measured_mps) = measured[i];
@@ -72,22 +63,18 @@ impl Host {
             let error_m = position + velocity * since_vetted - here_m;
             if !self.settlers[i].is_settled(velocity, measured_mps, error_m) {
                 let correction = (self.position_gain_per_s * error_m).clamp(-CORRECTION_MPS, CORRECTION_MPS);
-                target_mps[i] = velocity + acceleration * (since_vetted + period) + correction;
+                let asked = velocity + acceleration * (since_vetted + period) + correction;
+                target_mps[i] = asked.clamp(-self.most_mps[i], self.most_mps[i]);
             }
-            let before = self.last.map_or(measured_mps, |sent| sent.target_mps[i]);
-            ramp_mps2[i] =
-                ((target_mps[i] - before).abs() / period).clamp(LEAST_RAMP_MPS2, self.most_ramp_mps2[i]);
         }
-        self.last = Some(Sent { at: now, target_mps });
+        self.last_at = Some(now);
         let ticks = (setpoint.valid_for.micros() / TICK_MICROS).clamp(0, i64::from(u32::MAX));
-        Packet::Speeds { target_mps, ramp_mps2, ticks: ticks as u32 }
+        Packet::Speeds { target_mps, reach_secs: period, ticks: ticks as u32 }
     }
 }
 
-/// The controller may ramp this much faster than the axis brakes, for corrections on top of the reference.
-const RAMP_OVER_BRAKING: f64 = 2.0;
-/// So that a speed that changes by next to nothing is still reached.
-const LEAST_RAMP_MPS2: f64 = 0.1;
+/// Corrections at top speed may exceed it by this factor and no more.
+const OVERSPEED: f64 = 1.02;
 /// The most that the position loop adds to the speed fed forward, m/s.
 const CORRECTION_MPS: f64 = 0.25;
 /// Until two setpoints have told.

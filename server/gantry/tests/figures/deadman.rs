@@ -129,3 +129,23 @@ fn a_held_column_withstands_a_push() {
     assert!(course.machine.true_position().distance_m(before) < 0.002);
     assert!(course.machine.true_current_amps()[0] > 1.5);
 }
+
+#[test]
+fn after_a_pause_the_reference_is_caught_up_with_inside_the_limits() {
+    let mut course = cruising(0.9);
+    let start = course.machine.true_position();
+    let began = course.now;
+    // The control thread is away for 120 ms; its reference has gone on.
+    course.be_silent(0.12);
+    let (mut amps, mut peak_mps) = (0.0_f64, 0.0_f64);
+    while (course.now - began).secs() < 2.0 {
+        let gone = 0.9 * (course.now - began).secs();
+        track(&mut course, Floor::new(start.x + gone, start.y), 0.9, 0.0);
+        amps = amps.max(course.machine.true_current_amps()[0].abs());
+        peak_mps = peak_mps.max(course.machine.true_velocity().x);
+    }
+    let behind_m = start.x + 0.9 * (course.now - began).secs() - course.machine.true_position().x;
+    assert!(behind_m.abs() < 0.003, "{behind_m} m");
+    assert!(amps < 5.0, "{amps} A");
+    assert!(peak_mps > 0.95 && peak_mps < 1.13, "{peak_mps} m/s");
+}
