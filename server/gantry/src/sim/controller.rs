@@ -32,12 +32,20 @@ pub(super) struct AxisController {
 enum Motion {
     /// Bridge open.
     Released,
-    /// Ramp to a speed, no faster than the axis may; `ticks_left` until the dead-man brakes.
-    Speed { target_mps: f64, ramp_mps2: f64, ticks_left: u32 },
+    /// Follow a course of speeds; `ticks_left` until the dead-man brakes.
+    Speed { course: SpeedCourse, ticks_left: u32 },
     /// Brake to rest along a reference of its own.
     Brake { reference_m: f64 },
     /// Hold a place.
     Hold { at_m: f64 },
+}
+
+/// A speed, how it goes on from there, and how steeply the axis may change its own to get there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SpeedCourse {
+    pub(super) target_mps: f64,
+    pub(super) slope_mps2: f64,
+    pub(super) most_mps2: f64,
 }
 
 /// The speed that the velocity loop follows, and how it changes.
@@ -99,17 +107,10 @@ impl AxisController {
         self.integral_volts = 0.0;
     }
 
-    /// Ramp to a speed; brake when nothing newer came for `ticks`.
-    pub(super) fn go(&mut self, target_mps: f64, ramp_mps2: f64, ticks: u32) {
+    /// Go at a course of speeds; brake when nothing newer came for `ticks`.
+    pub(super) fn go(&mut self, course: SpeedCourse, ticks: u32) {
         self.power_up();
-        self.motion = Motion::Speed { target_mps, ramp_mps2, ticks_left: ticks };
-    }
-
-    /// As [`Self::go`], with the ramp that gets there in `reach_secs`, from wherever the axis is by now.
-    fn reach(&mut self, target_mps: f64, reach_secs: f64, ticks: u32) {
-        self.power_up();
-        let ramp_mps2 = (target_mps - self.ramp.speed_mps).abs() / reach_secs;
-        self.go(target_mps, ramp_mps2, ticks);
+        self.motion = Motion::Speed { course, ticks_left: ticks };
     }
 
     /// Brake to rest and hold there. Does nothing to an axis that brakes or holds already.
@@ -139,14 +140,10 @@ impl AxisController {
 
         let asked_mps = match self.motion {
             Motion::Released => return None,
-            Motion::Speed { target_mps, ramp_mps2, ticks_left } => {
-                if ticks_left == 0 {
-                    self.motion = Motion::Brake { reference_m: self.measured_m };
-                    self.braking(self.measured_m)
-                } else {
-                    self.motion = Motion::Speed { target_mps, ramp_mps2, ticks_left: ticks_left - 1 };
-                    self.ramp.towards(target_mps, ramp_mps2, &self.limits)
-                }
+            Motion::Speed { ticks_left: 0, .. } => self.braking(self.measured_m),
+            Motion::Speed { course, ticks_left } => {
+                self.motion = Motion::Speed { course: course.after_a_tick(), ticks_left: ticks_left - 1 };
+                self.ramp.along(&course, &self.limits)
             }
             Motion::Brake { reference_m } => self.braking(reference_m),
             Motion::Hold { at_m } => {
@@ -221,15 +218,32 @@ impl AxisController {
     }
 }
 
+impl SpeedCourse {
+    /// The same course a tick later: a course that slows down ends at rest, not beyond.
+    fn after_a_tick(self) -> Self {
+        let next = self.target_mps + self.slope_mps2 * TICK_SECS;
+        if next * self.target_mps < 0.0 {
+            Self { target_mps: 0.0, slope_mps2: 0.0, ..self }
+        } else {
+            Self { target_mps: next, ..self }
+        }
+    }
+}
+
 impl Ramp {
-    fn towards(&mut self, target_mps: f64, ramp_mps2: f64, limits: &AxisLimits) -> f64 {
-        let wanted = target_mps - self.speed_mps;
+    /// Onto the course within a few ticks, and then along it, no steeper than course and axis allow.
+    fn along(&mut self, course: &SpeedCourse, limits: &AxisLimits) -> f64 {
+        let off_mps = course.target_mps - self.speed_mps;
+        let wanted = course.slope_mps2 + off_mps / BLEND_SECS;
         let is_slowing = wanted * self.speed_mps < 0.0;
         let limit_mps2 = if is_slowing { limits.braking_mps2 } else { limits.acceleration_mps2 };
-        let most = ramp_mps2.min(CORRECTION_MARGIN * limit_mps2) * TICK_SECS;
-        let change = wanted.clamp(-most, most);
-        self.speed_mps += change;
-        self.acceleration_mps2 = change / TICK_SECS;
+        let most = course.most_mps2.min(CORRECTION_MARGIN * limit_mps2);
+        self.acceleration_mps2 = wanted.clamp(-most, most);
+        self.speed_mps = if course.slope_mps2 == 0.0 && off_mps.abs() < ON_COURSE_MPS {
+            course.target_mps
+        } else {
+            self.speed_mps + self.acceleration_mps2 * TICK_SECS
+        };
         self.speed_mps
     }
 
@@ -270,10 +284,9 @@ pub(super) enum Packet {
     Release,
     Brake,
     Home,
-    /// Speeds of both axes, when they are to be reached, and for how many ticks they are good.
+    /// Courses of both axes, and for how many ticks they are good.
     Speeds {
-        target_mps: [f64; 2],
-        reach_secs: f64,
+        courses: [SpeedCourse; 2],
         ticks: u32,
     },
 }
@@ -311,10 +324,10 @@ impl Controller {
                 self.homing = Homing::Running;
                 self.sequences = [HomingAxis::default(); 2];
             }
-            Packet::Speeds { target_mps, reach_secs, ticks } => {
+            Packet::Speeds { courses, ticks } => {
                 self.drive = Drive::On;
-                for (axis, target_mps) in self.axes.iter_mut().zip(target_mps) {
-                    axis.reach(target_mps, reach_secs, ticks);
+                for (axis, course) in self.axes.iter_mut().zip(courses) {
+                    axis.go(course, ticks);
                 }
             }
         }
@@ -365,7 +378,7 @@ impl Controller {
         for i in 0..2 {
             let axis = &mut self.axes[i];
             match self.sequences[i].step(&self.plans[i], axis, switches[i]) {
-                HomingStep::Move { speed_mps, ramp_mps2 } => axis.go(speed_mps, ramp_mps2, u32::MAX),
+                HomingStep::Move(course) => axis.go(course, u32::MAX),
                 HomingStep::Brake => axis.brake(),
                 HomingStep::Rest { at_m } => axis.hold(at_m),
                 HomingStep::Done => are_done[i] = true,
@@ -388,6 +401,10 @@ pub(super) const TICK_MICROS: i64 = 1_000;
 pub(super) const TICK_SECS: f64 = TICK_MICROS as f64 * 1e-6;
 /// Speed is measured over this many ticks: one count in it is 2.7 mm/s.
 const WINDOW_TICKS: usize = 8;
+/// Time in which an axis gets onto a new course; short of it, corrections would carry the counts' graininess.
+const BLEND_SECS: f64 = 0.006;
+/// Nearer than this to a constant speed is on it.
+const ON_COURSE_MPS: f64 = 1e-5;
 /// A ramp may be this much steeper than the axis limits, for corrections on top of a reference at its limits.
 const CORRECTION_MARGIN: f64 = 1.2;
 /// Below this a brake has come to rest.

@@ -2,7 +2,7 @@
 //!
 //! It never moves faster than the creep speed, and gives up when it does not move or finds no switch.
 
-use super::controller::{AxisController, TICK_SECS};
+use super::controller::{AxisController, SpeedCourse, TICK_SECS};
 use super::parameters::{HomingParameters, MachineParameters};
 
 /// Where one axis is in the sequence.
@@ -50,7 +50,7 @@ pub(super) struct HomingPlan {
 /// What the axis is to do in this tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum HomingStep {
-    Move { speed_mps: f64, ramp_mps2: f64 },
+    Move(SpeedCourse),
     Brake,
     Rest { at_m: f64 },
     Done,
@@ -84,7 +84,7 @@ impl HomingAxis {
             Phase::Measured if axis.is_at_rest() => self.enter(Phase::Leaving, here_m),
             _ => {}
         }
-        let creep = |speed_mps| HomingStep::Move { speed_mps, ramp_mps2: RAMP_MPS2 };
+        let creep = |speed_mps| HomingStep::Move(course(speed_mps));
         let step = match self.phase {
             Phase::Clearing | Phase::BackingOff => creep(p.creep_mps),
             Phase::Start | Phase::Seeking => creep(-p.creep_mps),
@@ -121,12 +121,12 @@ impl HomingAxis {
             return HomingStep::Rest { at_m: self.rest_m(plan) };
         }
         let speed = plan.parameters.creep_mps.min((RAMP_MPS2 * left_m).sqrt());
-        HomingStep::Move { speed_mps: speed, ramp_mps2: RAMP_MPS2 }
+        HomingStep::Move(course(speed))
     }
 
     /// Told to move, and has not for a while.
     fn is_stuck(&mut self, here_m: f64, step: HomingStep) -> bool {
-        let HomingStep::Move { .. } = step else { return false };
+        let HomingStep::Move(_) = step else { return false };
         if (here_m - self.watched_m).abs() > PROGRESS_M {
             self.watched_m = here_m;
             self.watched_ticks = 0;
@@ -134,6 +134,10 @@ impl HomingAxis {
         self.watched_ticks += 1;
         f64::from(self.watched_ticks) * TICK_SECS > STUCK_SECS
     }
+}
+
+fn course(speed_mps: f64) -> SpeedCourse {
+    SpeedCourse { target_mps: speed_mps, slope_mps2: 0.0, most_mps2: RAMP_MPS2 }
 }
 
 /// Ramps are gentle, and short enough to come to rest on the switch before the spring stops.

@@ -7,7 +7,7 @@ use covr_engine::machine::MachineReport;
 use covr_engine::safety::vetted::Setpoint;
 use covr_engine::time::Time;
 
-use super::controller::{Packet, TICK_MICROS};
+use super::controller::{Packet, SpeedCourse, TICK_MICROS};
 use super::parameters::MachineParameters;
 use super::settle::Settler;
 
@@ -17,7 +17,6 @@ pub(super) struct Host {
     position_gain_per_s: f64,
     most_mps: [f64; 2],
     settlers: [Settler; 2],
-    last_at: Option<Time>,
 }
 
 impl Host {
@@ -26,17 +25,15 @@ impl Host {
             position_gain_per_s: machine.tuning.position_gain_per_s,
             most_mps: [machine.limits.x.speed_mps, machine.limits.y.speed_mps].map(|most| OVERSPEED * most),
             settlers: [Settler::default(); 2],
-            last_at: None,
         }
     }
 
     /// Whatever was tracked is over.
     pub(super) fn forget(&mut self) {
-        self.last_at = None;
         self.settlers = [Settler::default(); 2];
     }
 
-    /// Speeds to reach at the end of the period that begins `now`.
+    /// Speeds from `now` on that follow a setpoint vetted at `vetted_at`.
     pub(super) fn follow(
         &mut self,
         now: Time,
@@ -44,32 +41,32 @@ impl Host {
         setpoint: &Setpoint,
         report: &MachineReport,
     ) -> Packet {
-        let since_vetted = (now - vetted_at).secs().clamp(0.0, MOST_PERIOD_SECS);
-        let since_report = (now - report.answered_at).secs().clamp(0.0, setpoint.valid_for.secs().max(0.0));
-        let period = match self.last_at {
-            Some(last_at) => (now - last_at).secs().clamp(LEAST_PERIOD_SECS, MOST_PERIOD_SECS),
-            None => USUAL_PERIOD_SECS,
-        };
+        let valid_secs = setpoint.valid_for.secs().max(0.0);
+        let since_vetted = (now - vetted_at).secs().clamp(0.0, valid_secs);
+        let since_report = (now - report.answered_at).secs().clamp(0.0, valid_secs);
         let axes = [
             (setpoint.position.x, setpoint.velocity.x, setpoint.acceleration.x),
             (setpoint.position.y, setpoint.velocity.y, setpoint.acceleration.y),
         ];
         let measured = [(report.position.x, report.velocity.x), (report.position.y, report.velocity.y)];
-        let mut target_mps = [0.0; 2];
-        for i in 0..2 {
+        let courses = [0, 1].map(|i| {
             let (position, velocity, acceleration) = axes[i];
             let (measured_m, measured_mps) = measured[i];
-            let here_m = measured_m + measured_mps * since_report;
-            let error_m = position + velocity * since_vetted - here_m;
-            if !self.settlers[i].is_settled(velocity, measured_mps, error_m) {
-                let correction = (self.position_gain_per_s * error_m).clamp(-CORRECTION_MPS, CORRECTION_MPS);
-                let asked = velocity + acceleration * (since_vetted + period) + correction;
-                target_mps[i] = asked.clamp(-self.most_mps[i], self.most_mps[i]);
+            let reference_m = position + (velocity + 0.5 * acceleration * since_vetted) * since_vetted;
+            let error_m = reference_m - (measured_m + measured_mps * since_report);
+            if self.settlers[i].is_settled(velocity, measured_mps, error_m) {
+                return SpeedCourse { target_mps: 0.0, slope_mps2: 0.0, most_mps2: f64::INFINITY };
             }
-        }
-        self.last_at = Some(now);
+            let correction = (self.position_gain_per_s * error_m).clamp(-CORRECTION_MPS, CORRECTION_MPS);
+            let asked = velocity + acceleration * since_vetted + correction;
+            SpeedCourse {
+                target_mps: asked.clamp(-self.most_mps[i], self.most_mps[i]),
+                slope_mps2: acceleration,
+                most_mps2: f64::INFINITY,
+            }
+        });
         let ticks = (setpoint.valid_for.micros() / TICK_MICROS).clamp(0, i64::from(u32::MAX));
-        Packet::Speeds { target_mps, reach_secs: period, ticks: ticks as u32 }
+        Packet::Speeds { courses, ticks: ticks as u32 }
     }
 }
 
@@ -77,7 +74,3 @@ impl Host {
 const OVERSPEED: f64 = 1.02;
 /// The most that the position loop adds to the speed fed forward, m/s.
 const CORRECTION_MPS: f64 = 0.25;
-/// Until two setpoints have told.
-const USUAL_PERIOD_SECS: f64 = 0.004;
-const LEAST_PERIOD_SECS: f64 = 0.001;
-const MOST_PERIOD_SECS: f64 = 0.02;

@@ -51,11 +51,16 @@ impl Course {
 
     /// One period under `action`: what is read at its end.
     pub fn step(&mut self, action: Action) -> (Result<(), NotTaken>, Reading) {
+        self.step_for(action, PERIOD)
+    }
+
+    /// The same, over another period.
+    pub fn step_for(&mut self, action: Action, period: Span) -> (Result<(), NotTaken>, Reading) {
         let clear = ArenaConfirmedClear::by_a_person_who_looked();
         let (limits, travel) = (self.machine.limits(), self.machine.travel());
         let command = Vetted::on_clear_course(clear, self.now, action, &limits, &travel).unwrap();
         let taken = self.machine.write(self.now, &command);
-        self.now += PERIOD;
+        self.now += period;
         (taken, self.machine.read(self.now))
     }
 
@@ -90,23 +95,34 @@ impl Course {
     }
 
     /// Follow a reference to `place`, both axes at once, and half a second more.
-    pub fn travel_to(&mut self, place: Floor, mut look: impl FnMut(&Seen)) {
+    pub fn travel_to(&mut self, place: Floor, look: impl FnMut(&Seen)) {
+        self.travel_in_periods(place, || PERIOD, look);
+    }
+
+    /// The same, in periods of any length.
+    pub fn travel_in_periods(
+        &mut self,
+        place: Floor,
+        mut period: impl FnMut() -> Span,
+        mut look: impl FnMut(&Seen),
+    ) {
         let start = self.machine.read(self.now).report.position;
+        let began = self.now;
         let limits = self.machine.limits();
         let (x, y) = (Move::new(place.x - start.x, &limits.x), Move::new(place.y - start.y, &limits.y));
-        let steps = ((x.secs().max(y.secs()) + 0.5) / PERIOD.secs()).ceil() as usize;
+        let secs = x.secs().max(y.secs()) + 0.5;
         let at = |t: f64| {
             let ((sx, vx, ax), (sy, vy, ay)) = (x.at(t), y.at(t));
             (start + Planar::new(sx, sy), Planar::new(vx, vy), Planar::new(ax, ay))
         };
-        for k in 0..steps {
-            let (position, velocity, acceleration) = at(k as f64 * PERIOD.secs());
+        while (self.now - began).secs() < secs {
+            let (position, velocity, acceleration) = at((self.now - began).secs());
             let valid_for = Span::from_millis(40);
             let setpoint = Setpoint { position, velocity, acceleration, valid_for };
-            let (taken, reading) = self.step(Action::Track(setpoint));
+            let (taken, reading) = self.step_for(Action::Track(setpoint), period());
             taken.unwrap();
             look(&Seen {
-                reference: at((k + 1) as f64 * PERIOD.secs()),
+                reference: at((self.now - began).secs()),
                 position: self.machine.true_position(),
                 velocity: self.machine.true_velocity(),
                 amps: self.machine.true_current_amps(),

@@ -7,4 +7,5 @@ mod deadman;
 mod faults;
 mod homing;
 mod reference;
+mod robustness;
 mod tracking;

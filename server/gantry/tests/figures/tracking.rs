@@ -1,6 +1,7 @@
 //! How well it follows: the paper's figures, and the numbers that separation and R5 to R7 count on.
 
 use covr_engine::frames::{Floor, Planar};
+use covr_engine::time::Span;
 use covr_gantry::contract::Gantry;
 use covr_gantry::sim::parameters::MachineParameters;
 use proptest::prelude::*;
@@ -155,4 +156,38 @@ fn the_same_calls_give_the_same_motion_bit_for_bit() {
         seen_bits
     };
     assert_eq!(run(), run());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(50))]
+
+    #[test]
+    fn a_control_thread_that_wakes_irregularly_is_followed_too(
+        micros in prop::collection::vec(1_000..12_000_i64, 50),
+    ) {
+        let mut course = Course::homed_at(Floor::new(0.5, 0.5));
+        let mut periods = micros.iter().cycle();
+        let (mut error_m, mut amps) = (0.0_f64, 0.0_f64);
+        let place = Floor::new(3.0, 2.0);
+        let period = || Span::from_micros(*periods.next().unwrap());
+        course.travel_in_periods(place, period, |seen| {
+            error_m = error_m.max(seen.position.distance_m(seen.reference.0));
+            amps = amps.max(seen.amps[0].abs()).max(seen.amps[1].abs());
+        });
+        prop_assert!(error_m < 0.010, "{} m", error_m);
+        prop_assert!(amps < 5.0, "{} A", amps);
+        prop_assert!(course.machine.true_position().distance_m(place) < 0.002);
+    }
+}
+
+#[test]
+fn setpoints_at_75_hz_are_followed_too() {
+    let mut course = Course::homed_at(Floor::new(0.5, 0.5));
+    let mut error_m = 0.0_f64;
+    course.travel_in_periods(
+        Floor::new(3.0, 2.0),
+        || Span::from_micros(13_333),
+        |seen| error_m = error_m.max(seen.position.distance_m(seen.reference.0)),
+    );
+    assert!(error_m < 0.010, "{error_m} m");
 }
