@@ -2,5 +2,6 @@
 //!
 //! Pure but for the reading of trace files: no clock, no thread, no random source but [`random::Random`]'s seed.
 
+pub mod checker;
 pub mod random;
 pub mod trace;
