@@ -5,3 +5,4 @@
 pub mod checker;
 pub mod random;
 pub mod trace;
+pub mod visitor;
