@@ -1,1 +1,13 @@
-//! Gantry.
+//! The contract with a machine, and the machines behind it.
+//!
+//! Encoder counts live here and nowhere else: what goes out is in the room frame (once homed) and in SI units.
+//! Nothing here decides about motion; a machine takes [`Vetted`](covr_engine::safety::vetted::Vetted) commands
+//! and nothing else, and brakes to rest by itself when they stop coming.
+//!
+//! - [`contract`]: what every machine offers: read, update, write.
+//! - [`sim`]: a simulated gantry with motors, friction, encoders, a velocity controller, and faults to switch on.
+//! - [`ideal`]: a machine that does exactly what it is told, for sweeps over rules rather than machines.
+
+pub mod contract;
+pub mod ideal;
+pub mod sim;

@@ -1,1 +1,8 @@
-//! Study.
+//! covr-study: people, recorded and made up, against the engine and a simulated machine on virtual time.
+//!
+//! Pure but for the reading of trace files: no clock, no thread, no random source but [`random::Random`]'s seed.
+
+pub mod checker;
+pub mod random;
+pub mod trace;
+pub mod visitor;

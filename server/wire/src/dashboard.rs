@@ -3,9 +3,13 @@
 //! The server sends `welcome` once, the active `scene` whenever it changes, a whole `snapshot` about 30 times a second
 //! (a slow reader skips generations), every `event`, and an `answer` to each request. Nothing is ever patched.
 
+mod convert;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
+
+pub use convert::{Surroundings, request_name, rule_title};
 
 use crate::scene::SceneDocument;
 
@@ -340,7 +344,7 @@ pub struct Event {
     /// Wall clock, RFC 3339.
     pub at: String,
     /// Kind: `mode_changed`, `rule_breached`, `rule_cleared`, `request_accepted`, `request_refused`, `stop_pressed`,
-    /// `person_entered`, `person_left`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
+    /// `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
     /// `scene_activated`, `prior_changed`, `client_connected`, `client_gone`, `client_error`.
     pub kind: String,
     /// In plain words.

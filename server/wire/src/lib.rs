@@ -1,4 +1,10 @@
 //! covr-wire: the messages of clients and dashboards, scenes as serialised, frame conversion. Pure.
 
+pub mod client;
+pub mod clock;
+mod complaint;
+pub mod convention;
 pub mod dashboard;
+#[cfg(test)]
+mod sample;
 pub mod scene;

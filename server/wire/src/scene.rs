@@ -1,19 +1,40 @@
 //! A scene as designers write it: JSON, room frame, metres, radians.
+//!
+//! The ranges in the schema's attributes are the ones that [`parse_scene`] checks; a test holds them together.
+
+mod check;
+mod parse;
+mod place;
+mod shape;
+mod spec;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
+
+pub use parse::{MAX_SCENE_BYTES, SceneError, build_scene, parse_scene};
+
+/// The value of a scene's `schema`.
+pub const SCHEMA: &str = "covr.scene.v1";
+
+/// The JSON Schema of a scene, draft 2020-12: for editors, and for generators of scenes.
+pub fn scene_schema() -> serde_json::Value {
+    schemars::schema_for!(SceneDocument).to_value()
+}
 
 /// A scene: objects of interest, props on the column, keep-out shapes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct SceneDocument {
     /// `covr.scene.v1`.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: String,
     /// What people call it; 1 to 80 characters.
+    #[schemars(length(min = 1, max = 80))]
     pub name: String,
     /// For people.
     #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schemars(length(max = 2000))]
     pub description: String,
     /// Where persons may be: the floor's rectangle, m.
     pub arena: ArenaDocument,
@@ -22,11 +43,14 @@ pub struct SceneDocument {
     pub column: ColumnDocument,
     /// What hangs on the column; an object without a prop is served by the column's centre.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 100))]
     pub props: Vec<PropDocument>,
     /// Virtual objects of interest; at least one, at most 500.
+    #[schemars(length(min = 1, max = 500))]
     pub objects: Vec<ObjectDocument>,
     /// Where the column must never go: furniture, bystanders.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 100))]
     pub keep_outs: Vec<KeepOutDocument>,
 }
 
@@ -35,8 +59,10 @@ pub struct SceneDocument {
 #[serde(deny_unknown_fields)]
 pub struct ArenaDocument {
     /// Corner of least x and y, m.
+    #[schemars(inner(range(min = -100.0, max = 100.0)))]
     pub min: [f64; 2],
     /// Corner of greatest x and y, m.
+    #[schemars(inner(range(min = -100.0, max = 100.0)))]
     pub max: [f64; 2],
 }
 
@@ -45,6 +71,7 @@ pub struct ArenaDocument {
 #[serde(deny_unknown_fields)]
 pub struct ColumnDocument {
     /// Size along x and y, m.
+    #[schemars(inner(range(min = 0.01, max = 10.0)))]
     pub size: [f64; 2],
 }
 
@@ -53,17 +80,22 @@ pub struct ColumnDocument {
 #[serde(deny_unknown_fields)]
 pub struct PropDocument {
     /// Unique in the scene.
+    #[schemars(length(min = 1, max = 64))]
     pub id: String,
     /// For people.
     #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schemars(length(max = 80))]
     pub label: String,
     /// From the column's centre to the prop's point of touch, m.
+    #[schemars(inner(range(min = -10.0, max = 10.0)))]
     pub offset: [f64; 2],
     /// Heading that the prop faces, rad, counter-clockwise from +x. The column cannot turn.
     #[serde(default)]
+    #[schemars(range(min = -6.3, max = 6.3))]
     pub facing: f64,
     /// The floor rectangle that it takes about its offset, m; counts in separation. `[0, 0]`: inside the column.
     #[serde(default)]
+    #[schemars(inner(range(min = 0.0, max = 10.0)))]
     pub size: [f64; 2],
 }
 
@@ -72,14 +104,18 @@ pub struct PropDocument {
 #[serde(deny_unknown_fields)]
 pub struct ObjectDocument {
     /// Unique in the scene.
+    #[schemars(length(min = 1, max = 64))]
     pub id: String,
     /// For people.
     #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schemars(length(max = 80))]
     pub label: String,
     /// Its centre, room frame, m.
+    #[schemars(inner(range(min = -100.0, max = 100.0)))]
     pub position: [f64; 3],
     /// Heading of its own +x axis, rad.
     #[serde(default)]
+    #[schemars(range(min = -6.3, max = 6.3))]
     pub yaw: f64,
     /// Its surface.
     pub shape: ShapeDocument,
@@ -88,6 +124,7 @@ pub struct ObjectDocument {
     pub prop: Option<String>,
     /// The scenario prior P, 0 to 1.
     #[serde(default = "one")]
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub prior: f64,
     /// It can be served now.
     #[serde(default = "yes")]
@@ -95,36 +132,43 @@ pub struct ObjectDocument {
 }
 
 /// A surface about the object's centre.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema, TS)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum ShapeDocument {
     /// A ball.
     Sphere {
         /// m.
+        #[schemars(range(min = 0.001, max = 100.0))]
         radius: f64,
     },
     /// A box.
     Box {
         /// Full size along its own axes, m.
+        #[schemars(inner(range(min = 0.001, max = 100.0)))]
         size: [f64; 3],
     },
     /// An upright cylinder.
     Cylinder {
         /// m.
+        #[schemars(range(min = 0.001, max = 100.0))]
         radius: f64,
         /// m.
+        #[schemars(range(min = 0.001, max = 100.0))]
         height: f64,
     },
     /// The convex hull of points.
     ConvexMesh {
         /// In the object's own axes, m; at least 4, not in one plane.
+        #[schemars(length(min = 4, max = 10_000))]
         points: Vec<[f64; 3]>,
     },
     /// Triangles.
     TriangleMesh {
         /// In the object's own axes, m.
+        #[schemars(length(min = 3, max = 100_000))]
         vertices: Vec<[f64; 3]>,
         /// Indices into `vertices`.
+        #[schemars(length(min = 1, max = 200_000))]
         triangles: Vec<[u32; 3]>,
     },
 }
@@ -134,28 +178,33 @@ pub enum ShapeDocument {
 #[serde(deny_unknown_fields)]
 pub struct KeepOutDocument {
     /// Unique in the scene.
+    #[schemars(length(min = 1, max = 64))]
     pub id: String,
     /// For people.
     #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schemars(length(max = 80))]
     pub label: String,
     /// Its shape on the floor.
     pub shape: KeepOutShape,
 }
 
 /// A shape on the floor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema, TS)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum KeepOutShape {
     /// A disc.
     Circle {
         /// Room frame, m.
+        #[schemars(inner(range(min = -100.0, max = 100.0)))]
         centre: [f64; 2],
         /// m.
+        #[schemars(range(min = 0.001, max = 100.0))]
         radius: f64,
     },
     /// A convex polygon.
     Polygon {
         /// Room frame, m; 3 to 32 corners.
+        #[schemars(length(min = 3, max = 32))]
         corners: Vec<[f64; 2]>,
     },
 }

@@ -1,0 +1,165 @@
+//! What the server says to a VR client.
+
+use serde::{Deserialize, Serialize};
+use ts_rs::TS;
+
+use super::{ClientError, Convention};
+use crate::dashboard::Mode;
+use crate::scene::SceneDocument;
+
+/// What the server says to a client.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum ToClient {
+    /// The answer to a hello.
+    Welcome(Box<Welcome>),
+    /// Another scene, or another version, is active.
+    Scene(Box<ActiveScene>),
+    /// Where the column is.
+    Column(ColumnNow),
+    /// What the visitor will touch next.
+    Prediction(Prediction),
+    /// Whether the machine is stopped; sent on connection and at each change.
+    Stop(StopState),
+    /// The answer to a ping.
+    ClockPong(ClockPong),
+    /// A message was refused.
+    Error(ClientError),
+}
+
+/// The answer to a hello.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+pub struct Welcome {
+    /// The server's version.
+    pub server_version: String,
+    /// Store id of the running session.
+    #[ts(type = "number | null")]
+    pub session_id: Option<i64>,
+    /// As declared.
+    pub convention: Convention,
+    /// What the machine and the protocol allow.
+    pub limits: ClientLimits,
+    /// The active scene.
+    pub scene: Option<ActiveScene>,
+}
+
+/// What the machine and the protocol allow, SI units, room axes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+pub struct ClientLimits {
+    /// Greatest speed of the column along x and y, m/s.
+    pub speed_mps: [f64; 2],
+    /// Greatest acceleration along x and y, m/s2.
+    pub acceleration_mps2: [f64; 2],
+    /// Greatest deceleration along x and y, m/s2.
+    pub braking_mps2: [f64; 2],
+    /// Least and greatest rate of poses of a person, Hz.
+    pub pose_rate_hz: [f64; 2],
+    /// The longest frame, bytes.
+    pub frame_bytes: usize,
+    /// A pose older than this stops the column, s.
+    pub max_pose_age_secs: f64,
+}
+
+/// The active scene, and how to find it in the client's space.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+pub struct ActiveScene {
+    /// Store id.
+    #[ts(type = "number")]
+    pub id: i64,
+    /// Its version.
+    #[ts(type = "number")]
+    pub version: i64,
+    /// As its author wrote it: room frame, metres, radians.
+    pub document: SceneDocument,
+    /// Takes a point of the room (x, y, z, 1; m) to the client's convention and units: three rows of four.
+    pub client_from_room: [[f64; 4]; 3],
+    /// Every object in the client's convention and units, in the document's order.
+    pub places: Vec<ObjectPlace>,
+}
+
+/// Where an object is, in the client's convention and units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+pub struct ObjectPlace {
+    /// Its id.
+    pub object: String,
+    /// Its centre.
+    pub position: [f64; 3],
+    /// Unit quaternion x, y, z, w that takes the convention's forward axis to the object's own +x axis.
+    pub orientation: [f64; 4],
+}
+
+/// Where the column is, in the client's convention and units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+pub struct ColumnNow {
+    /// Server time, microseconds since its start.
+    #[ts(type = "number")]
+    pub at_micros: i64,
+    /// The state of the machine.
+    pub mode: Mode,
+    /// Of its centre, on the floor; means something when `homed`.
+    pub position: [f64; 3],
+    /// Units a second.
+    pub velocity: [f64; 3],
+    /// The machine knows where the column is.
+    pub homed: bool,
+    /// Every object of the active scene, in its order.
+    pub prop_at: Vec<PropAt>,
+}
+
+/// Whether what stands in for an object is there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+pub struct PropAt {
+    /// The object's id.
+    pub object: String,
+    /// The prop's id; null: the column itself.
+    pub prop: Option<String>,
+    /// It is there, within 2 cm.
+    pub in_place: bool,
+}
+
+/// What the visitor will touch next, and whether the column will be there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+pub struct Prediction {
+    /// Server time, microseconds since its start.
+    #[ts(type = "number")]
+    pub at_micros: i64,
+    /// The object's id.
+    pub object: String,
+    /// The rule's probability of it, 0 to 1.
+    pub probability: f64,
+    /// When the column could be there, s from `at_micros`.
+    pub arrival_secs: f64,
+    /// How much later than the visitor that is, s; negative: earlier; null when nobody is near enough to say.
+    pub late_by_secs: Option<f64>,
+}
+
+/// Whether the machine is stopped, and why.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+pub struct StopState {
+    /// In a stop or faulted.
+    pub stopped: bool,
+    /// The state of the machine.
+    pub mode: Mode,
+    /// `R1` to `R16`.
+    pub rule: Option<String>,
+    /// What happened, in plain words.
+    pub reason: Option<String>,
+    /// What clears it, in plain words.
+    pub clears_when: Option<String>,
+}
+
+/// The answer to a ping.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, TS)]
+pub struct ClockPong {
+    /// The ping's.
+    pub id: u32,
+    /// The ping's, on the client's clock, microseconds.
+    #[ts(type = "number")]
+    pub client_time_micros: i64,
+    /// When the ping was received, server time, microseconds.
+    #[ts(type = "number")]
+    pub server_received_micros: i64,
+    /// When this was sent, server time, microseconds.
+    #[ts(type = "number")]
+    pub server_sent_micros: i64,
+}

@@ -1,0 +1,393 @@
+//! From the engine's state, events and answers to the dashboard's messages, and from its requests to the engine's.
+
+use std::collections::BTreeMap;
+
+use covr_engine::event::{Event as EngineEvent, EventKind};
+use covr_engine::frames::{Floor, Planar, Point, Room};
+use covr_engine::machine::{Limits, Travel};
+use covr_engine::mode::{Mode as EngineMode, RequestKind};
+use covr_engine::observation::PersonId;
+use covr_engine::snapshot::{self as engine, RuleId};
+use covr_engine::{Answer, Outcome as EngineOutcome, Request};
+use serde_json::json;
+
+use super::{
+    Client, Column, ControlLoop, Event, MachineRequest, MachineShape, Mode, Object, Outcome, Person,
+    RequestState, RuleState, RuleStatus, Snapshot, StopCause, ToDashboard,
+};
+
+/// What a snapshot holds that the engine does not know.
+#[derive(Debug, Clone)]
+pub struct Surroundings<'a> {
+    /// Grows by one with each published snapshot.
+    pub generation: u64,
+    /// What the clients call the persons.
+    pub names: &'a BTreeMap<PersonId, String>,
+    /// The control loop's health.
+    pub control_loop: ControlLoop,
+    /// Connected VR clients.
+    pub clients: Vec<Client>,
+    /// Store id of the active scene.
+    pub scene_id: Option<i64>,
+    /// Store id of the running session.
+    pub session_id: Option<i64>,
+}
+
+/// A short name of a safety rule, for people.
+pub fn rule_title(rule: RuleId) -> &'static str {
+    usize::from(rule.0).checked_sub(1).and_then(|i| RULE_TITLES.get(i).copied()).unwrap_or("unknown rule")
+}
+
+/// R1 first.
+const RULE_TITLES: [&str; 16] = [
+    "travel",
+    "tracking",
+    "separation",
+    "software stop",
+    "motor current",
+    "following error",
+    "plausibility",
+    "controller link",
+    "control loop",
+    "VR client",
+    "game master present",
+    "intruder",
+    "keep-out shapes",
+    "contact interactions",
+    "tracking origin",
+    "arena confirmed clear",
+];
+
+impl Snapshot {
+    /// The engine's state with what surrounds it.
+    pub fn new(state: &engine::Snapshot, around: Surroundings<'_>) -> Self {
+        Self {
+            generation: around.generation,
+            at_micros: state.at.micros(),
+            mode: state.mode.into(),
+            mode_since_micros: state.mode_since.micros(),
+            stop: state.stop.as_ref().map(Into::into),
+            requests: state
+                .refusals
+                .iter()
+                .map(|(kind, why)| RequestState {
+                    request: request_name(*kind).into(),
+                    refused_because: why.clone(),
+                })
+                .collect(),
+            rules: state.rules.iter().map(Into::into).collect(),
+            column: column(state),
+            persons: state.persons.iter().map(|person| self::person(person, around.names)).collect(),
+            objects: state.objects.iter().map(Into::into).collect(),
+            intention_rule: state.intention_rule.into(),
+            control_loop: around.control_loop,
+            clients: around.clients,
+            scene_id: around.scene_id,
+            session_id: around.session_id,
+        }
+    }
+}
+
+impl Event {
+    /// The engine's event, with the wall clock (RFC 3339) and the names of persons and objects at that moment.
+    pub fn new(
+        event: &EngineEvent,
+        at: String,
+        names: &BTreeMap<PersonId, String>,
+        objects: &[String],
+    ) -> Self {
+        let who = |person: &PersonId| name_of(*person, names);
+        let (kind, summary, detail) = match &event.kind {
+            EventKind::ModeChanged { from, to, because } => (
+                "mode_changed",
+                format!("{} to {}: {because}", in_words(*from), in_words(*to)),
+                json!({"from": from.name(), "to": to.name(), "because": because}),
+            ),
+            EventKind::RuleBreached { rule, reason } => (
+                "rule_breached",
+                format!("{} {}: {reason}", rule.name(), rule_title(*rule)),
+                json!({"rule": rule.name(), "title": rule_title(*rule), "reason": reason}),
+            ),
+            EventKind::RuleCleared { rule } => (
+                "rule_cleared",
+                format!("{} {} is kept again", rule.name(), rule_title(*rule)),
+                json!({"rule": rule.name(), "title": rule_title(*rule)}),
+            ),
+            EventKind::PersonEntered(person) => (
+                "person_entered",
+                format!("{} entered", who(person)),
+                json!({"person": person.0, "name": who(person)}),
+            ),
+            EventKind::PersonLeft(person) => (
+                "person_left",
+                format!("{} left", who(person)),
+                json!({"person": person.0, "name": who(person)}),
+            ),
+            EventKind::Served { person, object } => {
+                let id = objects.get(*object);
+                let object_name = id.map_or_else(|| format!("object {object}"), Clone::clone);
+                (
+                    "served",
+                    format!("the column stands at {object_name} for {}", who(person)),
+                    json!({"person": person.0, "name": who(person), "object": id}),
+                )
+            }
+        };
+        Self { at_micros: event.at.micros(), at, kind: kind.into(), summary, detail }
+    }
+}
+
+impl MachineRequest {
+    /// The engine's request.
+    pub fn to_engine(&self, reason: Option<String>) -> Request {
+        match self {
+            Self::Home => Request::Machine(RequestKind::Home, reason),
+            Self::Arm => Request::Machine(RequestKind::Arm, reason),
+            Self::Disarm => Request::Machine(RequestKind::Disarm, reason),
+            Self::Reset => Request::Machine(RequestKind::Reset, reason),
+            Self::ConfirmOrigin(person) => Request::ConfirmOrigin(PersonId(*person)),
+        }
+    }
+}
+
+impl ToDashboard {
+    /// The engine's answer to the request of this id; `to_drive_micros` for a stop.
+    pub fn answer(request_id: u32, answer: Answer, to_drive_micros: Option<u64>) -> Self {
+        Self::Answer { request_id, outcome: answer.outcome.into(), detail: answer.detail, to_drive_micros }
+    }
+}
+
+impl MachineShape {
+    /// The engine's numbers.
+    pub fn new(travel: &Travel, limits: &Limits) -> Self {
+        Self {
+            travel_m: [travel.min.x, travel.min.y, travel.max.x, travel.max.y],
+            speed_mps: [limits.x.speed_mps, limits.y.speed_mps],
+            acceleration_mps2: [limits.x.acceleration_mps2, limits.y.acceleration_mps2],
+            braking_mps2: [limits.x.braking_mps2, limits.y.braking_mps2],
+        }
+    }
+}
+
+impl From<EngineMode> for Mode {
+    fn from(mode: EngineMode) -> Self {
+        match mode {
+            EngineMode::Disarmed => Self::Disarmed,
+            EngineMode::Homing => Self::Homing,
+            EngineMode::Ready => Self::Ready,
+            EngineMode::Following => Self::Following,
+            EngineMode::ProtectiveStop => Self::ProtectiveStop,
+            EngineMode::LatchedStop => Self::LatchedStop,
+            EngineMode::Faulted => Self::Faulted,
+        }
+    }
+}
+
+impl From<EngineOutcome> for Outcome {
+    fn from(outcome: EngineOutcome) -> Self {
+        match outcome {
+            EngineOutcome::Accepted => Self::Accepted,
+            EngineOutcome::AlreadySo => Self::AlreadySo,
+            EngineOutcome::Refused => Self::Refused,
+        }
+    }
+}
+
+impl From<engine::RuleStatus> for RuleStatus {
+    fn from(status: engine::RuleStatus) -> Self {
+        match status {
+            engine::RuleStatus::Clear => Self::Clear,
+            engine::RuleStatus::Limiting => Self::Limiting,
+            engine::RuleStatus::Breached => Self::Breached,
+            engine::RuleStatus::Idle => Self::Idle,
+        }
+    }
+}
+
+impl From<&engine::StopCause> for StopCause {
+    fn from(cause: &engine::StopCause) -> Self {
+        Self {
+            rule: cause.rule.name(),
+            reason: cause.reason.clone(),
+            clears_when: cause.clears_when.clone(),
+            since_micros: cause.since.micros(),
+        }
+    }
+}
+
+impl From<&engine::RuleState> for RuleState {
+    fn from(rule: &engine::RuleState) -> Self {
+        Self {
+            rule: rule.rule.name(),
+            title: rule_title(rule.rule).into(),
+            status: rule.status.into(),
+            reason: rule.reason.clone(),
+            since_micros: rule.since.micros(),
+        }
+    }
+}
+
+impl From<&engine::ObjectState> for Object {
+    fn from(object: &engine::ObjectState) -> Self {
+        Self {
+            id: object.id.clone(),
+            weight: object.weight,
+            probability: object.probability,
+            prior: object.prior,
+            column_place_m: floor(object.column_place),
+            arrival_secs: object.arrival_secs,
+            touch_secs: object.touch_secs,
+        }
+    }
+}
+
+/// The name of a request on every surface.
+pub const fn request_name(kind: RequestKind) -> &'static str {
+    match kind {
+        RequestKind::Home => "home",
+        RequestKind::Arm => "arm",
+        RequestKind::Disarm => "disarm",
+        RequestKind::Stop => "stop",
+        RequestKind::Reset => "reset",
+    }
+}
+
+fn column(state: &engine::Snapshot) -> Column {
+    let column = &state.column;
+    Column {
+        position_m: floor(column.position),
+        velocity_mps: planar(column.velocity),
+        commanded_m: floor(column.commanded),
+        proxy_m: floor(column.proxy),
+        target_m: column.target.map(floor),
+        serves: column.serves.map(|person| person.0),
+        committed: column.committed.and_then(|i| state.objects.get(i)).map(|object| object.id.clone()),
+        current_amps: column.current_amps,
+        homed: column.homed,
+    }
+}
+
+fn person(person: &engine::PersonState, names: &BTreeMap<PersonId, String>) -> Person {
+    let view = person.pose.map(|pose| pose.view());
+    Person {
+        id: person.person.0,
+        name: name_of(person.person, names),
+        head_m: person.pose.map(|pose| point(&pose.position)),
+        yaw_rad: view.map_or(0.0, |view| view.y.atan2(view.x)),
+        pitch_rad: view.map_or(0.0, |view| view.z.atan2(view.x.hypot(view.y))),
+        pose_age_secs: person.pose_age_secs,
+        tracked: person.tracked,
+        awaits_confirmation: person.awaits_confirmation,
+        separation_radius_m: person.separation_radius_m,
+        distance_m: person.distance_m,
+        required_m: person.required_m,
+    }
+}
+
+fn name_of(person: PersonId, names: &BTreeMap<PersonId, String>) -> String {
+    names.get(&person).cloned().unwrap_or_else(|| format!("person {}", person.0))
+}
+
+fn in_words(mode: EngineMode) -> String {
+    mode.name().replace('_', " ")
+}
+
+fn point(point: &Point<Room>) -> [f64; 3] {
+    point.vector().into()
+}
+
+const fn floor(at: Floor) -> [f64; 2] {
+    [at.x, at.y]
+}
+
+const fn planar(vector: Planar) -> [f64; 2] {
+    [vector.x, vector.y]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+    use covr_engine::time::Time;
+
+    fn names() -> BTreeMap<PersonId, String> {
+        BTreeMap::from([(PersonId(3), "Ada".to_owned())])
+    }
+
+    #[test]
+    fn a_snapshot_carries_the_engines_state_under_its_names() {
+        let names = names();
+        let around = Surroundings {
+            generation: 9,
+            names: &names,
+            control_loop: sample::control_loop(),
+            clients: Vec::new(),
+            scene_id: Some(4),
+            session_id: None,
+        };
+        let snapshot = Snapshot::new(&sample::snapshot(), around);
+        assert_eq!(snapshot.generation, 9);
+        assert_eq!(snapshot.column.committed.as_deref(), Some("kettle"));
+        assert_eq!(snapshot.stop.as_ref().map(|stop| stop.rule.as_str()), Some("R2"));
+        assert_eq!(
+            (snapshot.persons[0].name.as_str(), snapshot.persons[1].name.as_str()),
+            ("Ada", "person 8")
+        );
+        assert!((snapshot.persons[0].yaw_rad - 0.5).abs() < 1e-12);
+        assert!((snapshot.persons[0].pitch_rad - 0.25).abs() < 1e-12);
+        assert_eq!(snapshot.persons[1].head_m, None);
+        assert_eq!(snapshot.rules[0].title, "travel");
+        assert_eq!(snapshot.requests[0].request, "reset");
+        let json = serde_json::to_value(ToDashboard::Snapshot(Box::new(snapshot))).unwrap();
+        assert_eq!(json["type"], "snapshot");
+        assert_eq!(json["mode"], "protective_stop");
+    }
+
+    #[test]
+    fn every_mode_has_one_name_on_every_surface() {
+        for mode in EngineMode::ALL {
+            assert_eq!(serde_json::to_value(Mode::from(mode)).unwrap(), mode.name());
+        }
+    }
+
+    #[test]
+    fn every_rule_has_a_title_and_no_other_number_has() {
+        let titles: std::collections::BTreeSet<_> = (1..=16).map(|rule| rule_title(RuleId(rule))).collect();
+        assert_eq!(titles.len(), 16);
+        assert!([0, 17, 255].into_iter().all(|rule| rule_title(RuleId(rule)) == "unknown rule"));
+    }
+
+    #[test]
+    fn events_name_persons_objects_and_rules() {
+        let objects = ["kettle".to_owned()];
+        let said = |kind| {
+            let event = EngineEvent { at: Time::from_micros(5), kind };
+            let event = Event::new(&event, "2026-01-01T00:00:00Z".into(), &names(), &objects);
+            (event.kind.clone(), event.summary)
+        };
+        let served = said(EventKind::Served { person: PersonId(3), object: 0 });
+        assert_eq!(served, ("served".into(), "the column stands at kettle for Ada".into()));
+        let breached = said(EventKind::RuleBreached { rule: RuleId(2), reason: "0.6 s old".into() });
+        assert_eq!(breached, ("rule_breached".into(), "R2 tracking: 0.6 s old".into()));
+        let changed = said(EventKind::ModeChanged {
+            from: EngineMode::Following,
+            to: EngineMode::LatchedStop,
+            because: "stop pressed".into(),
+        });
+        assert_eq!(changed.1, "following to latched stop: stop pressed");
+    }
+
+    #[test]
+    fn a_request_reaches_the_engine_with_its_reason() {
+        let Request::Machine(RequestKind::Reset, Some(reason)) =
+            MachineRequest::Reset.to_engine(Some("looked".into()))
+        else {
+            panic!("another request");
+        };
+        assert_eq!(reason, "looked");
+        assert!(matches!(
+            MachineRequest::ConfirmOrigin(3).to_engine(None),
+            Request::ConfirmOrigin(PersonId(3))
+        ));
+    }
+}

@@ -1,0 +1,107 @@
+//! A small state for the tests of this crate.
+
+use covr_engine::frames::{Floor, Planar, Point, Pose};
+use covr_engine::mode::{Mode, RequestKind};
+use covr_engine::observation::PersonId;
+use covr_engine::scene::Scene;
+use covr_engine::snapshot::{
+    ColumnState, ObjectState, PersonState, RuleId, RuleState, RuleStatus, Snapshot, StopCause,
+};
+use covr_engine::time::Time;
+use nalgebra::UnitQuaternion;
+
+use crate::dashboard::ControlLoop;
+use crate::scene::{SceneDocument, build_scene, parse_scene};
+
+pub(crate) const SCENE: &str = r#"{
+  "schema": "covr.scene.v1",
+  "name": "two things",
+  "arena": {"min": [0, 0], "max": [4, 4]},
+  "props": [{"id": "handle", "offset": [0.1, 0]}],
+  "objects": [
+    {"id": "kettle", "position": [1, 3, 1.1], "yaw": 0.7, "prop": "handle",
+     "shape": {"kind": "cylinder", "radius": 0.1, "height": 0.25}},
+    {"id": "lamp", "position": [3, 3, 1.4], "shape": {"kind": "sphere", "radius": 0.15}}
+  ],
+  "keep_outs": [{"id": "sofa", "shape": {"kind": "circle", "centre": [0.5, 0.5], "radius": 0.3}}]
+}"#;
+
+pub(crate) fn document() -> SceneDocument {
+    parse_scene(SCENE.as_bytes()).expect("a good scene").0
+}
+
+pub(crate) fn scene() -> Scene {
+    build_scene(&document()).expect("a good scene")
+}
+
+pub(crate) fn control_loop() -> ControlLoop {
+    ControlLoop {
+        rate_hz: 250.0,
+        steps: 10,
+        missed_deadlines: 0,
+        lateness_p99_micros: 80.0,
+        lateness_max_micros: 120.0,
+        scheduling: "normal".into(),
+    }
+}
+
+/// In a protective stop; person 3 looks half a radian to the left and a quarter up; person 8 has sent no pose.
+pub(crate) fn snapshot() -> Snapshot {
+    let at = Time::from_micros(7_000_000);
+    let person = |id, pose| PersonState {
+        person: PersonId(id),
+        pose,
+        pose_age_secs: 0.6,
+        tracked: true,
+        awaits_confirmation: false,
+        separation_radius_m: 0.45,
+        distance_m: 1.2,
+        required_m: 0.9,
+    };
+    let object = |id: &str, probability, touch_secs| ObjectState {
+        id: id.into(),
+        weight: probability,
+        probability,
+        prior: 1.0,
+        column_place: Floor::new(if id == "kettle" { 0.9 } else { 3.0 }, 3.0),
+        arrival_secs: 2.0,
+        touch_secs,
+    };
+    let looking = Pose {
+        position: Point::new(2.0, 1.0, 1.7),
+        orientation: UnitQuaternion::from_euler_angles(0.0, -0.25, 0.5),
+    };
+    Snapshot {
+        at,
+        mode: Mode::ProtectiveStop,
+        mode_since: at,
+        stop: Some(StopCause {
+            rule: RuleId(2),
+            reason: "the pose is 0.6 s old".into(),
+            clears_when: "the headset is tracked again for 1 s".into(),
+            since: at,
+        }),
+        refusals: vec![(RequestKind::Reset, Some("nothing is latched".into()))],
+        rules: vec![RuleState {
+            rule: RuleId(1),
+            status: RuleStatus::Clear,
+            reason: String::new(),
+            since: at,
+        }],
+        column: ColumnState {
+            position: Floor::new(1.0, 1.5),
+            velocity: Planar::new(0.2, 0.1),
+            commanded: Floor::new(1.0, 1.5),
+            commanded_velocity: Planar::ZERO,
+            proxy: Floor::new(1.1, 1.6),
+            target: Some(Floor::new(0.9, 3.0)),
+            serves: Some(PersonId(3)),
+            committed: Some(0),
+            current_amps: [0.5, 0.4],
+            homed: true,
+        },
+        persons: vec![person(3, Some(looking)), person(8, None)],
+        objects: vec![object("kettle", 0.4, Some(1.5)), object("lamp", 0.6, None)],
+        intention_rule: "paper",
+    }
+}

@@ -1,0 +1,128 @@
+//! From text to a scene, or to everything that is wrong with it: where, what was found, what was expected.
+//!
+//! Syntax and types end at the first error, as nothing after it can be trusted; ranges, references and geometry are
+//! reported all at once.
+
+use std::fmt::{self, Display};
+
+use covr_engine::scene::Scene;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use ts_rs::TS;
+
+use super::place::Finder;
+use super::{SceneDocument, check, spec};
+use crate::complaint::Complaint;
+
+/// The longest scene, bytes: some 100 meshes of 500 triangles.
+pub const MAX_SCENE_BYTES: usize = 4 * 1024 * 1024;
+
+/// One thing that is wrong with a scene.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct SceneError {
+    /// Where, as a JSON path: `$.objects[3].shape.radius`.
+    pub path: String,
+    /// Line in the text, from 1; null without a text.
+    pub line: Option<usize>,
+    /// Column in the line, from 1, in bytes; null without a text.
+    pub column: Option<usize>,
+    /// What was found there.
+    pub found: String,
+    /// What was expected there.
+    pub expected: String,
+}
+
+/// Read a scene: its document, and what the engine makes of it.
+pub fn parse_scene(text: &[u8]) -> Result<(SceneDocument, Scene), Vec<SceneError>> {
+    if text.len() > MAX_SCENE_BYTES {
+        let found = format!("{} bytes", text.len());
+        return Err(vec![SceneError::new("$".into(), found, format!("at most {MAX_SCENE_BYTES} bytes"))]);
+    }
+    let document = read(text).map_err(|error| vec![error])?;
+    match build_scene(&document) {
+        Ok(scene) => Ok((document, scene)),
+        Err(mut errors) => {
+            let finder = Finder::new(text);
+            for error in &mut errors {
+                (error.line, error.column) = finder.find(&error.path).unzip();
+            }
+            Err(errors)
+        }
+    }
+}
+
+/// What the engine makes of a document that is there already.
+pub fn build_scene(document: &SceneDocument) -> Result<Scene, Vec<SceneError>> {
+    let mut errors = check::check(document);
+    match Scene::build(spec::spec(document)) {
+        Ok(scene) if errors.is_empty() => return Ok(scene),
+        Ok(_) => {}
+        Err(problems) => {
+            let said_already = |path: &str, errors: &[SceneError]| {
+                errors.iter().any(|known| {
+                    known.path.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('['))
+                })
+            };
+            for error in problems.iter().map(spec::error) {
+                if !said_already(&error.path, &errors) {
+                    errors.push(error);
+                }
+            }
+        }
+    }
+    errors.truncate(MOST_ERRORS);
+    Err(errors)
+}
+
+/// A scene with more errors than this has one error many times.
+const MOST_ERRORS: usize = 100;
+
+fn read(text: &[u8]) -> Result<SceneDocument, SceneError> {
+    let mut json = serde_json::Deserializer::from_slice(text);
+    let document = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        let path = error.path().to_string();
+        SceneError::from_serde(&path, error.inner())
+    })?;
+    json.end().map_err(|error| SceneError::from_serde(".", &error))?;
+    Ok(document)
+}
+
+impl SceneError {
+    pub(super) fn new(path: String, found: impl Display, expected: impl Display) -> Self {
+        Self { path, line: None, column: None, found: found.to_string(), expected: expected.to_string() }
+    }
+
+    fn from_serde(path: &str, error: &serde_json::Error) -> Self {
+        let complaint = Complaint::parse(&error.to_string(), "JSON");
+        let mut full = "$".to_owned();
+        if path != "." {
+            if !path.starts_with('[') {
+                full.push('.');
+            }
+            full.push_str(path);
+        }
+        if let Some(key) = complaint.key {
+            full.push('.');
+            full.push_str(&key);
+        }
+        let known = error.line() > 0;
+        Self {
+            path: full,
+            line: known.then(|| error.line()),
+            column: known.then(|| error.column().max(1)),
+            found: complaint.found,
+            expected: complaint.expected,
+        }
+    }
+}
+
+impl Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let (Some(line), Some(column)) = (self.line, self.column) {
+            write!(f, "line {line}, column {column}: ")?;
+        }
+        write!(f, "{}: found {}, expected {}", self.path, self.found, self.expected)
+    }
+}
+
+impl std::error::Error for SceneError {}
