@@ -57,6 +57,16 @@ impl Vetted {
         Self { at, action }
     }
 
+    /// Brake to rest and hold: for a shell whose engine has ended. It needs no vetting.
+    pub const fn hold(at: Time) -> Self {
+        Self { at, action: Action::Hold }
+    }
+
+    /// Leave the drive released: for a shell whose engine has ended with the drive released.
+    pub const fn release(at: Time) -> Self {
+        Self { at, action: Action::Release }
+    }
+
     /// A command on a course run in an empty arena, checked for travel and speed only.
     pub fn on_clear_course(
         _clear: ArenaConfirmedClear,
