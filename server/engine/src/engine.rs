@@ -19,7 +19,7 @@ use crate::safety::parameters::Parameters;
 use crate::safety::path::State;
 use crate::safety::separation::{Separation, Threat};
 use crate::safety::supervisor::{Demand, Supervisor, Watched, clears_when};
-use crate::safety::vetted::{Action, Vetted};
+use crate::safety::vetted::Vetted;
 use crate::scene::Scene;
 use crate::snapshot::{RuleId, StopCause};
 use crate::time::{Span, Time};
@@ -189,13 +189,13 @@ impl Engine {
         self.progress_homing(now);
         let config = &self.config;
         let wish = self.following.weigh(&self.persons, &self.scene, &self.priors, now, &self.parameters);
-        let action = match self.mode {
+        let command = match self.mode {
             Mode::Disarmed | Mode::LatchedStop | Mode::Faulted => self.stop_and_release(now),
-            Mode::Homing if self.may_home() => Action::Home,
-            Mode::Homing => Action::Hold,
-            Mode::ProtectiveStop if self.resumes == Mode::Homing => Action::Hold,
+            Mode::Homing if self.may_home() => Vetted::home(now),
+            Mode::Homing => Vetted::hold(now),
+            Mode::ProtectiveStop if self.resumes == Mode::Homing => Vetted::hold(now),
             Mode::Ready | Mode::Following | Mode::ProtectiveStop => {
-                let Some(report) = self.report else { return Vetted::new(now, Action::Hold) };
+                let Some(report) = self.report else { return Vetted::hold(now) };
                 let governor = self.governor.get_or_insert_with(|| Governor::at_rest(report.position));
                 let separation = Separation {
                     scene: &self.scene,
@@ -228,7 +228,7 @@ impl Engine {
             self.following.rest_at(report.position);
         }
         self.record(now);
-        Vetted::new(now, action)
+        command
     }
 
     /// The events since the last call, oldest first.
@@ -313,11 +313,11 @@ impl Engine {
     }
 
     /// Brake at the limit; once at rest (or long since unheard), release.
-    fn stop_and_release(&self, now: Time) -> Action {
+    fn stop_and_release(&self, now: Time) -> Vetted {
         let drive_is_on = self.report.is_some_and(|r| r.drive == Drive::On);
         let rests = self.rests_since.is_some_and(|since| now - since >= REST_BEFORE_RELEASE);
         let long_enough = now - self.mode_since > LONGEST_BRAKE;
-        if drive_is_on && !rests && !long_enough { Action::Hold } else { Action::Release }
+        if drive_is_on && !rests && !long_enough { Vetted::hold(now) } else { Vetted::release(now) }
     }
 
     /// Nobody can be met at creep speed, whichever way homing goes. Before the machine is homed its place is what it
@@ -448,7 +448,7 @@ impl Engine {
 }
 
 fn governor_command(governor: Option<&Governor>, now: Time, valid_for: Span) -> Vetted {
-    governor.map_or_else(|| Vetted::new(now, Action::Hold), |g| g.command(now, valid_for))
+    governor.map_or_else(|| Vetted::hold(now), |g| g.command(now, valid_for))
 }
 
 fn refused(detail: String) -> Answer {

@@ -3,6 +3,7 @@
 use super::*;
 use crate::frames::{Floor, Planar, Point, Pose};
 use crate::observation::PoseSample;
+use crate::safety::vetted::Action;
 use crate::scene::{ObjectSpec, SceneSpec, Shape};
 use nalgebra::UnitQuaternion;
 use proptest::prelude::*;

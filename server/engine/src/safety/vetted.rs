@@ -53,7 +53,7 @@ pub enum CourseRefused {
 }
 
 impl Vetted {
-    pub(crate) const fn new(at: Time, action: Action) -> Self {
+    pub(in crate::safety) const fn new(at: Time, action: Action) -> Self {
         Self { at, action }
     }
 
@@ -65,6 +65,11 @@ impl Vetted {
     /// Leave the drive released: for a shell whose engine has ended with the drive released.
     pub const fn release(at: Time) -> Self {
         Self { at, action: Action::Release }
+    }
+
+    /// Home at creep speed: the machine's own motion, allowed by the engine while nobody can be met.
+    pub(crate) const fn home(at: Time) -> Self {
+        Self { at, action: Action::Home }
     }
 
     /// A command on a course run in an empty arena, checked for travel and speed only.
