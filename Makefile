@@ -1,0 +1,46 @@
+# Two commands: `make run` and `make test`. Both set up what they need on a machine with Rust and Node.
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+# Recorded people, where there are some; without them the synthetic visitor walks.
+COVR_TRACES ?= $(wildcard ../shared/traces)
+export COVR_TRACES
+# The binary that the browser tests start.
+export COVR_BIN ?= $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/debug/covr
+# Where `make run` listens.
+BIND ?= 127.0.0.1:7878
+
+.PHONY: help run test setup build fmt check-format clippy test-rust test-web test-e2e
+
+help: ## This list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+
+run: build ## Start the server (simulated gantry, demo scene) with a visitor; the dashboard is on http://127.0.0.1:7878
+	BIND=$(BIND) deploy/demo
+
+test: setup check-format clippy test-rust test-web test-e2e ## Everything: format, lint, types, unit, closed-loop, API, store and browser tests
+
+setup: ## Install what the tests need and this machine lacks
+	tests/setup
+
+build:
+	cargo build --locked --package covr-server
+
+fmt: ## Format Rust and web sources
+	cargo fmt --all
+	cd web && npx prettier --log-level warn --write .
+
+check-format:
+	cargo fmt --all --check
+
+clippy:
+	cargo clippy --locked --workspace --all-targets -- --deny warnings
+
+test-rust:
+	cargo nextest run --locked --workspace --no-fail-fast
+	cargo test --locked --workspace --doc --quiet
+
+test-web:
+	cd web && npm run lint && npm run types && npm test
+
+test-e2e: build
+	cd tests/e2e && npm test
