@@ -258,6 +258,17 @@ proptest! {
     }
 
     #[test]
+    fn a_position_arrives_to_the_last_bit(position in prop::array::uniform3(-100.0_f64..100.0)) {
+        let value = changed(pose(), "/position", json!(position));
+        for encoding in ENCODINGS {
+            let FromClient::Pose(pose) = decode(encoding, &encoded(encoding, &value)).expect("a good pose") else {
+                panic!("another message");
+            };
+            prop_assert_eq!(pose.position.map(f64::to_bits), position.map(f64::to_bits));
+        }
+    }
+
+    #[test]
     fn damaged_frames_are_refused_or_sound(
         value in prop::sample::select(good()),
         at in any::<prop::sample::Index>(),
