@@ -92,6 +92,7 @@ pub struct ClientHello {
     pub token: Option<Token>,
     /// It will send hands.
     #[serde(default)]
+    #[ts(optional, as = "Option<bool>")]
     pub hands: bool,
 }
 

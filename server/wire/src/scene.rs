@@ -71,7 +71,7 @@ pub struct ArenaDocument {
 #[serde(deny_unknown_fields)]
 pub struct ColumnDocument {
     /// Size along x and y, m.
-    #[schemars(inner(range(min = 0.01, max = 10.0)))]
+    #[schemars(inner(range(min = 0.01, max = 2.0)))]
     pub size: [f64; 2],
 }
 
@@ -87,7 +87,7 @@ pub struct PropDocument {
     #[schemars(length(max = 80))]
     pub label: String,
     /// From the column's centre to the prop's point of touch, m.
-    #[schemars(inner(range(min = -10.0, max = 10.0)))]
+    #[schemars(inner(range(min = -2.0, max = 2.0)))]
     pub offset: [f64; 2],
     /// Heading that the prop faces, rad, counter-clockwise from +x. The column cannot turn.
     #[serde(default)]
@@ -95,7 +95,7 @@ pub struct PropDocument {
     pub facing: f64,
     /// The floor rectangle that it takes about its offset, m; counts in separation. `[0, 0]`: inside the column.
     #[serde(default)]
-    #[schemars(inner(range(min = 0.0, max = 10.0)))]
+    #[schemars(inner(range(min = 0.0, max = 3.0)))]
     pub size: [f64; 2],
 }
 
@@ -138,37 +138,37 @@ pub enum ShapeDocument {
     /// A ball.
     Sphere {
         /// m.
-        #[schemars(range(min = 0.001, max = 100.0))]
+        #[schemars(range(min = 0.001, max = 50.0))]
         radius: f64,
     },
     /// A box.
     Box {
         /// Full size along its own axes, m.
-        #[schemars(inner(range(min = 0.001, max = 100.0)))]
+        #[schemars(inner(range(min = 0.001, max = 50.0)))]
         size: [f64; 3],
     },
     /// An upright cylinder.
     Cylinder {
         /// m.
-        #[schemars(range(min = 0.001, max = 100.0))]
+        #[schemars(range(min = 0.001, max = 50.0))]
         radius: f64,
         /// m.
-        #[schemars(range(min = 0.001, max = 100.0))]
+        #[schemars(range(min = 0.001, max = 50.0))]
         height: f64,
     },
     /// The convex hull of points.
     ConvexMesh {
         /// In the object's own axes, m; at least 4, not in one plane.
-        #[schemars(length(min = 4, max = 10_000))]
+        #[schemars(length(min = 4, max = 100_000), inner(inner(range(min = -50.0, max = 50.0))))]
         points: Vec<[f64; 3]>,
     },
     /// Triangles.
     TriangleMesh {
         /// In the object's own axes, m.
-        #[schemars(length(min = 3, max = 100_000))]
+        #[schemars(length(min = 3, max = 100_000), inner(inner(range(min = -50.0, max = 50.0))))]
         vertices: Vec<[f64; 3]>,
         /// Indices into `vertices`.
-        #[schemars(length(min = 1, max = 200_000))]
+        #[schemars(length(min = 1, max = 100_000))]
         triangles: Vec<[u32; 3]>,
     },
 }
@@ -198,13 +198,13 @@ pub enum KeepOutShape {
         #[schemars(inner(range(min = -100.0, max = 100.0)))]
         centre: [f64; 2],
         /// m.
-        #[schemars(range(min = 0.001, max = 100.0))]
+        #[schemars(range(min = 0.01, max = 50.0))]
         radius: f64,
     },
     /// A convex polygon.
     Polygon {
         /// Room frame, m; 3 to 32 corners.
-        #[schemars(length(min = 3, max = 32))]
+        #[schemars(length(min = 3, max = 32), inner(inner(range(min = -100.0, max = 100.0))))]
         corners: Vec<[f64; 2]>,
     },
 }

@@ -1,6 +1,6 @@
-//! What the types of a scene do not say: lengths, ranges, counts, unique ids, props that exist. All of it at once.
+//! What the types of a scene do not say and its schema does: lengths, ranges, counts; and that its props exist. All of
+//! it at once. Geometry and ids are the engine's to check.
 
-use std::collections::HashSet;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
@@ -16,19 +16,16 @@ pub(super) fn check(document: &SceneDocument) -> Vec<SceneError> {
     problems.text("$.description", &document.description, 0..=2_000);
     problems.numbers("$.arena.min", &document.arena.min, ROOM);
     problems.numbers("$.arena.max", &document.arena.max, ROOM);
-    problems.numbers("$.column.size", &document.column.size, 0.01..=10.0);
+    problems.numbers("$.column.size", &document.column.size, 0.01..=2.0);
     problems.count("$.props", document.props.len(), 0..=100);
-    problems.unique("$.props", document.props.iter().map(|prop| prop.id.as_str()));
     for (i, prop) in document.props.iter().enumerate() {
         problems.prop(&format!("$.props[{i}]"), prop);
     }
     problems.count("$.objects", document.objects.len(), 1..=500);
-    problems.unique("$.objects", document.objects.iter().map(|object| object.id.as_str()));
     for (i, object) in document.objects.iter().enumerate() {
         problems.object(&format!("$.objects[{i}]"), object, &document.props);
     }
     problems.count("$.keep_outs", document.keep_outs.len(), 0..=100);
-    problems.unique("$.keep_outs", document.keep_outs.iter().map(|keep_out| keep_out.id.as_str()));
     for (i, keep_out) in document.keep_outs.iter().enumerate() {
         let at = format!("$.keep_outs[{i}]");
         problems.text(&format!("{at}.id"), &keep_out.id, 1..=64);
@@ -49,9 +46,9 @@ impl Problems {
     fn prop(&mut self, at: &str, prop: &PropDocument) {
         self.text(&format!("{at}.id"), &prop.id, 1..=64);
         self.text(&format!("{at}.label"), &prop.label, 0..=80);
-        self.numbers(&format!("{at}.offset"), &prop.offset, -10.0..=10.0);
+        self.numbers(&format!("{at}.offset"), &prop.offset, -2.0..=2.0);
         self.angle(&format!("{at}.facing"), prop.facing);
-        self.numbers(&format!("{at}.size"), &prop.size, 0.0..=10.0);
+        self.numbers(&format!("{at}.size"), &prop.size, 0.0..=3.0);
     }
 
     fn object(&mut self, at: &str, object: &ObjectDocument, props: &[PropDocument]) {
@@ -81,13 +78,13 @@ impl Problems {
                 self.number(&format!("{at}.height"), *height, SIZE);
             }
             ShapeDocument::ConvexMesh { points } => {
-                self.count(&format!("{at}.points"), points.len(), 4..=10_000);
-                self.points(&format!("{at}.points"), points);
+                self.count(&format!("{at}.points"), points.len(), 4..=100_000);
+                self.points(&format!("{at}.points"), points, MESH);
             }
             ShapeDocument::TriangleMesh { vertices, triangles } => {
                 self.count(&format!("{at}.vertices"), vertices.len(), 3..=100_000);
-                self.points(&format!("{at}.vertices"), vertices);
-                self.count(&format!("{at}.triangles"), triangles.len(), 1..=200_000);
+                self.points(&format!("{at}.vertices"), vertices, MESH);
+                self.count(&format!("{at}.triangles"), triangles.len(), 1..=100_000);
             }
         }
     }
@@ -96,19 +93,19 @@ impl Problems {
         match shape {
             KeepOutShape::Circle { centre, radius } => {
                 self.numbers(&format!("{at}.centre"), centre, ROOM);
-                self.number(&format!("{at}.radius"), *radius, SIZE);
+                self.number(&format!("{at}.radius"), *radius, 0.01..=50.0);
             }
             KeepOutShape::Polygon { corners } => {
                 self.count(&format!("{at}.corners"), corners.len(), 3..=32);
-                self.points(&format!("{at}.corners"), corners);
+                self.points(&format!("{at}.corners"), corners, ROOM);
             }
         }
     }
 
-    fn points<const N: usize>(&mut self, at: &str, points: &[[f64; N]]) {
+    fn points<const N: usize>(&mut self, at: &str, points: &[[f64; N]], range: RangeInclusive<f64>) {
         for (i, point) in points.iter().enumerate() {
-            if point.iter().any(|number| !ROOM.contains(number)) {
-                self.numbers(&format!("{at}[{i}]"), point, ROOM);
+            if point.iter().any(|number| !range.contains(number)) {
+                self.numbers(&format!("{at}[{i}]"), point, range.clone());
             }
         }
     }
@@ -144,15 +141,6 @@ impl Problems {
             self.add(at, format!("{count} of them"), format!("{} to {}", range.start(), range.end()));
         }
     }
-
-    fn unique<'a>(&mut self, at: &str, ids: impl Iterator<Item = &'a str>) {
-        let mut seen = HashSet::new();
-        for (i, id) in ids.enumerate() {
-            if !seen.insert(id) {
-                self.add(format!("{at}[{i}].id"), format!("{} again", quoted(id)), "an id of its own");
-            }
-        }
-    }
 }
 
 fn quoted(text: &str) -> String {
@@ -162,7 +150,9 @@ fn quoted(text: &str) -> String {
 /// Coordinates, m: a hall; a number beyond it is in another unit.
 const ROOM: RangeInclusive<f64> = -100.0..=100.0;
 /// Sizes of surfaces, m.
-const SIZE: RangeInclusive<f64> = 0.001..=100.0;
+const SIZE: RangeInclusive<f64> = 0.001..=50.0;
+/// Coordinates of a mesh about its object's centre, m.
+const MESH: RangeInclusive<f64> = -50.0..=50.0;
 /// Headings, rad: a number beyond it is in degrees.
 const ANGLE: RangeInclusive<f64> = -6.3..=6.3;
 /// Ids that an error lists.

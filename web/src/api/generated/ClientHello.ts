@@ -20,4 +20,4 @@ token?: string | null,
 /**
  * It will send hands.
  */
-hands: boolean, };
+hands?: boolean, };

@@ -1,0 +1,251 @@
+//! Scenes from outside: the examples build, the schema and the parser agree, and every problem is named at its place.
+
+use std::path::Path;
+
+use covr_wire::scene::{MAX_SCENE_BYTES, SceneError, parse_scene, scene_schema};
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+const EXAMPLES: [&str; 3] = ["demo.json", "paper-demo.json", "gallery.json"];
+
+fn example(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../deploy/scenes").join(name);
+    std::fs::read_to_string(path).expect("an example scene")
+}
+
+fn errors(scene: &Value) -> Vec<SceneError> {
+    parse_scene(scene.to_string().as_bytes()).err().unwrap_or_default()
+}
+
+fn changed(mut scene: Value, pointer: &str, to: Value) -> Value {
+    *scene.pointer_mut(pointer).expect("a field of the scene") = to;
+    scene
+}
+
+fn small() -> Value {
+    json!({
+        "schema": "covr.scene.v1",
+        "name": "every shape",
+        "arena": {"min": [0, 0], "max": [4, 4]},
+        "column": {"size": [0.2, 0.2]},
+        "props": [{"id": "p", "offset": [0.1, 0], "facing": 0, "size": [0, 0]}],
+        "objects": [
+            {"id": "a", "position": [1, 1, 1], "yaw": 0, "shape": {"kind": "sphere", "radius": 0.1}, "prop": "p", "prior": 0.5, "enabled": true},
+            {"id": "b", "position": [2, 1, 1], "shape": {"kind": "box", "size": [1, 1, 1]}},
+            {"id": "c", "position": [3, 1, 1], "shape": {"kind": "cylinder", "radius": 0.1, "height": 1}},
+            {"id": "d", "position": [1, 3, 1], "shape": {"kind": "convex_mesh", "points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}},
+            {"id": "e", "position": [2, 3, 1], "shape": {"kind": "triangle_mesh", "vertices": [[0,0,0],[1,0,0],[0,1,0]], "triangles": [[0,1,2]]}}
+        ],
+        "keep_outs": [
+            {"id": "x", "shape": {"kind": "circle", "centre": [3, 3], "radius": 0.2}},
+            {"id": "y", "shape": {"kind": "polygon", "corners": [[0,0],[1,0],[0,1]]}}
+        ]
+    })
+}
+
+#[test]
+fn the_example_scenes_build() {
+    for name in EXAMPLES {
+        let (document, scene) = parse_scene(example(name).as_bytes()).unwrap_or_else(|errors| {
+            panic!("{name}: {}", errors.iter().map(|e| format!("{e}\n")).collect::<String>())
+        });
+        assert_eq!(document.objects.len(), scene.spec().objects.len());
+        for (object, spec) in document.objects.iter().zip(&scene.spec().objects) {
+            let offset = spec.prop.map_or([0.0; 2], |prop| document.props[prop].offset);
+            for (centre, offset) in object.position.iter().zip(offset) {
+                let place = centre - offset;
+                assert!((0.3..=3.7).contains(&place), "{name}: the column serves {} at {place}", object.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_examples_show_every_shape_and_the_papers_counts() {
+    let texts = EXAMPLES.map(example);
+    for kind in ["sphere", "box", "cylinder", "convex_mesh", "triangle_mesh"] {
+        assert!(texts[0].contains(&format!("\"{kind}\"")), "{kind}");
+    }
+    for kind in ["circle", "polygon"] {
+        assert!(texts[2].contains(&format!("\"{kind}\"")), "{kind}");
+    }
+    let (paper, _) = parse_scene(texts[1].as_bytes()).expect("a good scene");
+    assert_eq!((paper.objects.len(), paper.props.len()), (7, 5));
+}
+
+#[test]
+fn a_document_written_and_read_again_is_the_same() {
+    for name in EXAMPLES {
+        let (document, _) = parse_scene(example(name).as_bytes()).expect("a good scene");
+        let text = serde_json::to_vec(&document).expect("a document can be written");
+        assert_eq!(parse_scene(&text).expect("a good scene").0, document);
+    }
+}
+
+/// Changes that the schema can see: it must refuse what the parser refuses, at the same path.
+fn structural() -> Vec<(&'static str, Value, &'static str)> {
+    vec![
+        ("/schema", json!("covr.scene.v2"), "$.schema"),
+        ("/name", json!(""), "$.name"),
+        ("/name", json!("x".repeat(81)), "$.name"),
+        ("/name", json!(7), "$.name"),
+        ("/arena/min/0", json!(-101), "$.arena.min[0]"),
+        ("/arena/max", json!([4]), "$.arena.max"),
+        ("/column/size/1", json!(0), "$.column.size[1]"),
+        ("/props/0/id", json!(""), "$.props[0].id"),
+        ("/props/0/offset/0", json!(2.5), "$.props[0].offset[0]"),
+        ("/props/0/facing", json!(90), "$.props[0].facing"),
+        ("/props/0/size/0", json!(-0.1), "$.props[0].size[0]"),
+        ("/objects", json!([]), "$.objects"),
+        ("/objects/0/position/2", json!("high"), "$.objects[0].position[2]"),
+        ("/objects/0/yaw", json!(180), "$.objects[0].yaw"),
+        ("/objects/0/prior", json!(1.5), "$.objects[0].prior"),
+        ("/objects/0/prior", json!(-0.1), "$.objects[0].prior"),
+        ("/objects/0/enabled", json!("yes"), "$.objects[0].enabled"),
+        ("/objects/0/shape/radius", json!(0), "$.objects[0].shape.radius"),
+        ("/objects/0/shape/radius", json!("big"), "$.objects[0].shape.radius"),
+        ("/objects/0/shape/kind", json!("blob"), "$.objects[0].shape.kind"),
+        ("/objects/1/shape/size/2", json!(51), "$.objects[1].shape.size[2]"),
+        ("/objects/2/shape/height", json!(null), "$.objects[2].shape.height"),
+        ("/objects/3/shape/points", json!([[0, 0, 0]]), "$.objects[3].shape.points"),
+        ("/objects/3/shape/points/1/2", json!(60), "$.objects[3].shape.points[1][2]"),
+        ("/objects/4/shape/triangles", json!([]), "$.objects[4].shape.triangles"),
+        ("/objects/4/shape/triangles/0/1", json!(-1), "$.objects[4].shape.triangles[0][1]"),
+        ("/keep_outs/0/shape/radius", json!(0.001), "$.keep_outs[0].shape.radius"),
+        ("/keep_outs/1/shape/corners", json!([[0, 0], [1, 0]]), "$.keep_outs[1].shape.corners"),
+        ("/keep_outs/1/shape/corners/2/1", json!(400), "$.keep_outs[1].shape.corners[2][1]"),
+    ]
+}
+
+#[test]
+fn schema_and_parser_refuse_alike_and_the_parser_says_where() {
+    let schema = jsonschema::draft202012::new(&scene_schema()).expect("a good schema");
+    assert!(schema.is_valid(&small()));
+    assert_eq!(errors(&small()), []);
+    for (pointer, to, path) in structural() {
+        let scene = changed(small(), pointer, to.clone());
+        assert!(!schema.is_valid(&scene), "the schema lets {pointer} = {to} through");
+        let errors = errors(&scene);
+        assert_eq!(errors.first().map(|e| e.path.as_str()), Some(path), "{pointer} = {to}: {errors:?}");
+        assert_eq!(errors.iter().filter(|e| e.path == path).count(), 1, "said once: {errors:?}");
+        assert!(errors.iter().all(|e| e.line == Some(1) && e.column.is_some()), "{errors:?}");
+    }
+}
+
+#[test]
+fn schema_and_parser_refuse_fields_that_nobody_knows_and_miss_those_due() {
+    let schema = jsonschema::draft202012::new(&scene_schema()).expect("a good schema");
+    let parents = [
+        "",
+        "/arena",
+        "/column",
+        "/props/0",
+        "/objects/0",
+        "/objects/0/shape",
+        "/keep_outs/0",
+        "/keep_outs/0/shape",
+    ];
+    for parent in parents {
+        let mut scene = small();
+        scene.pointer_mut(parent).expect("a part")["colour"] = json!("red");
+        assert!(!schema.is_valid(&scene), "{parent}");
+        let error = errors(&scene).remove(0);
+        assert!(error.found.contains("colour") && error.expected.contains('`'), "{error}");
+    }
+    for (parent, key, path) in [
+        ("", "schema", "$.schema"),
+        ("/arena", "max", "$.arena.max"),
+        ("/objects/2", "position", "$.objects[2].position"),
+        ("/objects/2/shape", "height", "$.objects[2].shape.height"),
+        ("/objects/2/shape", "kind", "$.objects[2].shape.kind"),
+        ("/keep_outs/0/shape", "centre", "$.keep_outs[0].shape.centre"),
+    ] {
+        let mut scene = small();
+        scene.pointer_mut(parent).and_then(Value::as_object_mut).expect("a part").remove(key);
+        assert!(!schema.is_valid(&scene), "{path}");
+        let error = errors(&scene).remove(0);
+        assert_eq!((error.path.as_str(), error.found.as_str()), (path, "nothing"));
+    }
+    let mut scene = small();
+    scene["objects"][0]["shape"]["height"] = json!(1);
+    assert!(!schema.is_valid(&scene));
+    assert!(errors(&scene)[0].found.contains("height"));
+}
+
+#[test]
+fn the_schema_accepts_the_examples() {
+    let schema = scene_schema();
+    assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    let schema = jsonschema::draft202012::new(&schema).expect("a good schema");
+    for name in EXAMPLES {
+        let scene: Value = serde_json::from_str(&example(name)).expect("JSON");
+        let complaints: Vec<_> = schema.iter_errors(&scene).map(|e| e.to_string()).collect();
+        assert!(complaints.is_empty(), "{name}: {complaints:?}");
+    }
+}
+
+#[test]
+fn everything_wrong_with_a_scene_is_said_at_once_with_its_line() {
+    let text = r#"{
+  "schema": "covr.scene.v1",
+  "name": "two mistakes and more",
+  "arena": {"min": [0, 0], "max": [4, 4]},
+  "objects": [
+    {"id": "a", "position": [1, 1, 1], "shape": {"kind": "sphere", "radius": -1}},
+    {"id": "a", "position": [9, 1, 1], "prop": "nowhere",
+     "shape": {"kind": "triangle_mesh", "vertices": [[0,0,0],[1,0,0],[0,1,0]], "triangles": [[0,1,7]]}}
+  ]
+}"#;
+    let errors = parse_scene(text.as_bytes()).expect_err("a bad scene");
+    let said = |path: &str| {
+        let error = errors.iter().find(|e| e.path == path).unwrap_or_else(|| panic!("{path} in {errors:?}"));
+        (error.line, error.to_string())
+    };
+    assert_eq!(
+        said("$.objects[0].shape.radius"),
+        (
+            Some(6),
+            "line 6, column 78: $.objects[0].shape.radius: found -1, expected a number from 0.001 to 50"
+                .into()
+        )
+    );
+    assert_eq!(said("$.objects[1].id").0, Some(7));
+    assert_eq!(said("$.objects[1].position").0, Some(7));
+    assert!(said("$.objects[1].prop").1.contains("found \"nowhere\", expected a prop of this scene"));
+    assert_eq!(said("$.objects[1].shape.triangles").0, Some(8));
+    assert_eq!(errors.len(), 5, "{errors:?}");
+}
+
+#[test]
+fn text_that_is_no_json_is_refused_with_line_and_column() {
+    let error = parse_scene(b"{\n  \"schema\": \"covr.scene.v1\",\n  \"name\" \"x\"\n}")
+        .expect_err("no JSON")
+        .remove(0);
+    assert_eq!((error.line, error.column), (Some(3), Some(10)));
+    assert!(error.expected.contains("JSON"), "{error}");
+    for text in [&b""[..], b"[]", b"{}", b"\xff\xfe", b"{} {}"] {
+        assert_eq!(parse_scene(text).expect_err("no scene").len(), 1);
+    }
+    let long = parse_scene(&vec![b' '; MAX_SCENE_BYTES + 1]).expect_err("too long").remove(0);
+    assert_eq!((long.path.as_str(), long.found.as_str()), ("$", "4194305 bytes"));
+}
+
+#[test]
+fn a_scene_with_an_error_in_each_vertex_is_answered_in_time() {
+    let vertices: Vec<_> = (0..50_000).map(|_| json!([99, 99, 99])).collect();
+    let scene = changed(small(), "/objects/4/shape/vertices", json!(vertices));
+    assert_eq!(errors(&scene).len(), 100);
+}
+
+proptest! {
+    #[test]
+    fn damaged_scenes_are_refused_or_build(at in any::<prop::sample::Index>(), byte: u8, cut: bool) {
+        let mut text = small().to_string().into_bytes();
+        let place = at.index(text.len());
+        if cut { text.truncate(place) } else { text[place] = byte }
+        if let Err(errors) = parse_scene(&text) {
+            prop_assert!(!errors.is_empty());
+            prop_assert!(errors.iter().all(|e| e.path.starts_with('$') && !e.found.is_empty()));
+        }
+    }
+}
