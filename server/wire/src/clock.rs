@@ -1,8 +1,9 @@
 //! From a client's clock to the server's: what a pose's time means here. Pure; the caller says when things came.
 //!
 //! The offset is taken from the exchange of least round trip in the last 10 s, since its error is at most half that
-//! round trip whatever the asymmetry of the link. Until there is an exchange, the least (reception - client time) of
-//! the last 10 s stands in for it: that is too late by the quickest one-way delay, so 20 ms are added to every age.
+//! round trip whatever the asymmetry of the link; nor is anything dated later than the quickest delivery of the last
+//! 10 s allows. Until there is an exchange, that delivery, the least (reception - client time), stands in for it: it
+//! dates poses too late by the quickest one-way delay, so 20 ms are added to every age.
 //!
 //! A client's clock that jumps shows itself by an exchange that contradicts the kept ones, or by a pose from the
 //! future; what was known is then forgotten. A jump backwards alone looks like delay, so poses age until the next
@@ -76,9 +77,11 @@ impl ClientClock {
             self.forget();
         }
         self.note_lead(lead, received);
+        let least_lead = self.least_lead().unwrap_or(lead);
         let offset = match self.best() {
-            Some(best) => best.offset_micros,
-            None => self.least_lead().unwrap_or(lead) - i128::from(ONE_WAY_ALLOWANCE.micros()),
+            // Nothing arrives before it leaves: where all exchanges are slow, the quickest delivery bounds better.
+            Some(best) => best.offset_micros.min(least_lead + MOST_DRIFT_MICROS),
+            None => least_lead - i128::from(ONE_WAY_ALLOWANCE.micros()),
         };
         let micros = (client_time + offset).clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64;
         Time::from_micros(micros).min(received)
@@ -162,6 +165,8 @@ const MOST_OPEN_PONGS: usize = 16;
 const MOST_RTT_MICROS: i128 = 2_000_000;
 /// Two quartz clocks of 100 ppm each, the worst that is sold.
 const DRIFT_PPM: i128 = 200;
+/// What they may drift apart in one window.
+const MOST_DRIFT_MICROS: i128 = WINDOW.micros() as i128 * DRIFT_PPM / 1_000_000;
 /// Added to every age while only one-way times are known: a wireless headset's quickest delivery takes less.
 pub const ONE_WAY_ALLOWANCE: Span = Span::from_millis(20);
 
@@ -326,6 +331,18 @@ mod tests {
         assert_eq!(client.clock.rtt(), None);
         assert_eq!(converted, taken + 3_000 - ONE_WAY_ALLOWANCE.micros());
         assert!(converted < received);
+    }
+
+    #[test]
+    fn a_slow_and_lopsided_exchange_cannot_date_poses_later_than_the_quickest_delivery() {
+        let mut client = Simulated::new(77, 0);
+        for _ in 0..3 {
+            client.exchange(1_500_000, 0, 1_000);
+        }
+        client.pose(4_000);
+        client.now += 100_000;
+        let (converted, taken, _) = client.pose(400_000);
+        assert_eq!(converted, taken + 4_000 + 2_000);
     }
 
     #[test]
