@@ -10,11 +10,17 @@ use super::{KeepOutShape, ShapeDocument};
 #[serde(deny_unknown_fields)]
 struct ShapeFields {
     kind: ShapeKind,
+    #[serde(default, deserialize_with = "written")]
     radius: Option<f64>,
+    #[serde(default, deserialize_with = "written")]
     height: Option<f64>,
+    #[serde(default, deserialize_with = "written")]
     size: Option<[f64; 3]>,
+    #[serde(default, deserialize_with = "written")]
     points: Option<Vec<[f64; 3]>>,
+    #[serde(default, deserialize_with = "written")]
     vertices: Option<Vec<[f64; 3]>>,
+    #[serde(default, deserialize_with = "written")]
     triangles: Option<Vec<[u32; 3]>>,
 }
 
@@ -32,8 +38,11 @@ enum ShapeKind {
 #[serde(deny_unknown_fields)]
 struct KeepOutFields {
     kind: KeepOutKind,
+    #[serde(default, deserialize_with = "written")]
     centre: Option<[f64; 2]>,
+    #[serde(default, deserialize_with = "written")]
     radius: Option<f64>,
+    #[serde(default, deserialize_with = "written")]
     corners: Option<Vec<[f64; 2]>>,
 }
 
@@ -109,6 +118,11 @@ impl<'de> Deserialize<'de> for KeepOutShape {
             }
         })
     }
+}
+
+/// A field that is written has a value: null is none.
+fn written<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(deserializer).map(Some)
 }
 
 fn due<'de, D: Deserializer<'de>, T>(field: Option<T>, name: &'static str) -> Result<T, D::Error> {
