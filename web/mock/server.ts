@@ -50,7 +50,7 @@ export class MockServer {
     const url = new URL(request.url ?? "/", "http://mock");
     if (!url.pathname.startsWith("/api/v1/")) return false;
     void readBody(request).then((body) => {
-      this.#route(request.method ?? "GET", url, body, String(request.headers["x-covr-author"] ?? ""), response);
+      this.#route(request.method ?? "GET", url, body, decodeURIComponent(String(request.headers["x-covr-author"] ?? "")), response);
     });
     return true;
   }
@@ -113,7 +113,7 @@ export class MockServer {
     } else if (key === "PATCH priors") this.#changePriors(body, author, response);
     else if (key === "GET priors") reply(response, 200, this.#changes);
     else if (key === "GET sessions") {
-      reply(response, 200, [{ id: 1, started_at: STARTED_AT, ended_at: null, scene: MOCK_SCENE.name }]);
+      reply(response, 200, [{ id: 1, started_at: STARTED_AT, ended_at: null, how: null, scene: MOCK_SCENE.name }]);
     } else if (key === "GET events") {
       reply(response, 200, this.machine.events.slice(0, Number(url.searchParams.get("limit") ?? "50")));
     } else problem(response, 404, "Not found", `nothing is at ${url.pathname}`);

@@ -91,7 +91,7 @@ async function call(method: string, path: string, body?: { text: string; author:
     signal: AbortSignal.timeout(CALL_DEADLINE_MILLIS),
     ...(body === undefined
       ? {}
-      : { body: body.text, headers: { "Content-Type": "application/json", "X-Covr-Author": asHeader(body.author) } }),
+      : { body: body.text, headers: { "Content-Type": "application/json", "X-Covr-Author": encodeURIComponent(body.author) } }),
   });
   if (!response.ok) throw await problemOf(response);
   const text = await response.text();
@@ -133,11 +133,6 @@ function sceneErrorOf(value: unknown): SceneError {
 
 function record(value: unknown): Record<string, unknown> {
   return typeof value === "object" && value !== null ? (value as Record<string, unknown>) : {};
-}
-
-/** Header values are Latin letters only; anything else goes percent-encoded. */
-function asHeader(author: string): string {
-  return /^[\x20-\x7e]*$/.test(author) ? author : encodeURIComponent(author);
 }
 
 const CALL_DEADLINE_MILLIS = 5000;

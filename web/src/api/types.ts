@@ -51,7 +51,10 @@ export interface SessionSummary {
   readonly id: number;
   readonly started_at: string;
   readonly ended_at: string | null;
-  readonly scene: string | null;
+  /** How it ended; null while it runs. */
+  readonly how: string | null;
+  /** What people call the scene that was active at its start. */
+  readonly scene: string;
 }
 
 /** One finding of a refused scene. */

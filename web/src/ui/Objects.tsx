@@ -146,20 +146,20 @@ function Row(props: {
       <th scope="row">
         {props.label}
         <Show when={props.predicted}>
-          <span class="tag">predicted</span>
-        </Show>
-        <Show when={!props.enabled}>
-          <span class="tag">off</span>
+          <span class="unseen">, predicted</span>
         </Show>
       </th>
       <td class="weight" style={{ "--share": String(Math.min(1, props.object.weight)) }}>
         {props.object.weight.toFixed(2)}
       </td>
-      <td>{percent(props.object.probability)}</td>
-      <td>{secsOf(props.object.arrival_secs)}</td>
-      <td>{props.object.touch_secs === null ? "–" : secsOf(props.object.touch_secs)}</td>
-      <td classList={{ bad: (late() ?? 0) > 0 }}>{lateWords(late())}</td>
-      <td class="prior">
+      <Show when={props.enabled} fallback={<td colspan="4">off in this scene</td>}>
+        <td>{percent(props.object.probability)}</td>
+        <td>{secsOf(props.object.arrival_secs)}</td>
+        <td>{props.object.touch_secs === null ? "–" : secsOf(props.object.touch_secs)}</td>
+        <td classList={{ bad: isLate(late()) }}>{lateWords(late())}</td>
+      </Show>
+      <td>
+        <div class="prior">
         <input
           type="range"
           min="0"
@@ -174,6 +174,7 @@ function Row(props: {
           onChange={(event) => void apply(event.currentTarget.valueAsNumber)}
         />
         <output data-testid={`prior-value-${props.object.id}`}>{prior().toFixed(2)}</output>
+        </div>
       </td>
     </tr>
   );
@@ -183,9 +184,13 @@ function secsOf(secs: number): string {
   return Number.isFinite(secs) && secs < 100 ? `${secs.toFixed(1)} s` : "–";
 }
 
+function isLate(late: number | null): boolean {
+  return late !== null && late >= LATE_FROM_SECS;
+}
+
 function lateWords(late: number | null): string {
   if (late === null || !Number.isFinite(late)) return "–";
-  return late > 0 ? `${late.toFixed(1)} s` : "in time";
+  return isLate(late) ? `${late.toFixed(1)} s` : "in time";
 }
 
 function changeWords(change: PriorChange | undefined, scene: Parameters<typeof labelOf>[0]): string {
@@ -197,6 +202,8 @@ function messageOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }
 
+/** What reads as 0.1 s and more. */
+const LATE_FROM_SECS = 0.05;
 const SAME_PRIOR = 0.0005;
 /** The server publishes about 30 times a second: by then its word counts, whatever it is, ms. */
 const SHOWN_WITHIN_MILLIS = 1500;

@@ -20,6 +20,9 @@ export function Rules(props: { readonly live: Live }): JSX.Element {
       <h2 id="rules-title">
         Safety rules <small class="fades">{summary()}</small>
       </h2>
+      <p class="rule-overview fades" aria-hidden="true">
+        <For each={rules()}>{(rule) => <span data-status={rule.status}>{rule.rule}</span>}</For>
+      </p>
       <ol class="rules fades scrolls" tabindex="0" aria-label="Safety rules">
         <For each={rules()}>
           {(rule) => (

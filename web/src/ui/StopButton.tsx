@@ -25,8 +25,7 @@ export function StopButton(props: { readonly press: () => void }): JSX.Element {
   return (
     <div class="stop-corner">
       <p class="stop-note" id="stop-note">
-        <b>Keys:</b> <kbd>Esc</kbd> always, <kbd>Space</kbd> unless typing.
-        <br />
+        <b>Keys:</b> <kbd>Esc</kbd> always, <kbd>Space</kbd> unless typing. <br />
         Not the emergency stop: the wired stop chain is elsewhere.
       </p>
       <button

@@ -171,7 +171,7 @@ function UploadReport(props: { readonly upload: Upload }): JSX.Element {
                     {(entry) => (
                       <tr data-testid="scene-error">
                         <th scope="row">
-                          <code>{entry.path}</code>
+                          <code>{entry.path === "" ? "the document" : entry.path}</code>
                         </th>
                         <td>{entry.line ?? "–"}</td>
                         <td>{entry.column ?? "–"}</td>

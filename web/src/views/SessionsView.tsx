@@ -36,6 +36,7 @@ export function SessionsView(props: { readonly live: Live }): JSX.Element {
               <th scope="col">session</th>
               <th scope="col">began</th>
               <th scope="col">lasted</th>
+              <th scope="col">ended by</th>
               <th scope="col">scene</th>
             </tr>
           </thead>
@@ -47,12 +48,11 @@ export function SessionsView(props: { readonly live: Live }): JSX.Element {
                   <td>{dayAndTime(session.started_at)}</td>
                   <td>
                     {session.ended_at === null
-                      ? props.live.snapshot()?.session_id === session.id
-                        ? "running"
-                        : "end not recorded"
+                      ? "running"
                       : span((Date.parse(session.ended_at) - Date.parse(session.started_at)) / 1000)}
                   </td>
-                  <td>{session.scene ?? "–"}</td>
+                  <td>{session.how?.replaceAll("_", " ") ?? "–"}</td>
+                  <td>{session.scene}</td>
                 </tr>
               )}
             </For>
