@@ -9,6 +9,7 @@
 //! It advances to the time that it is given, real or virtual, in steps of 0.5 ms. It owns no clock and no random
 //! source: the same calls give the same motion, bit for bit. A step allocates nothing.
 
+mod axis;
 mod controller;
 pub mod faults;
 mod homing;
@@ -24,7 +25,8 @@ use covr_engine::safety::vetted::{Action, Vetted};
 use covr_engine::time::{Span, Time};
 
 use crate::contract::{Gantry, LinkError, NotTaken, Reading, Simulated, Truth};
-use controller::{Controller, Packet, TICK_MICROS};
+use axis::TICK_MICROS;
+use controller::{Controller, Packet};
 use faults::{Faults, LinkFault};
 use host::Host;
 use link::Link;

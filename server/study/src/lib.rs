@@ -4,5 +4,6 @@
 
 pub mod checker;
 pub mod random;
+pub mod replay;
 pub mod trace;
 pub mod visitor;

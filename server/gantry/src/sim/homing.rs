@@ -2,7 +2,7 @@
 //!
 //! It never moves faster than the creep speed, and gives up when it does not move or finds no switch.
 
-use super::controller::{AxisController, SpeedCourse, TICK_SECS};
+use super::axis::{AxisController, SpeedCourse, TICK_SECS};
 use super::parameters::{HomingParameters, MachineParameters};
 
 /// Where one axis is in the sequence.

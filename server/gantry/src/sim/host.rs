@@ -7,7 +7,8 @@ use covr_engine::machine::MachineReport;
 use covr_engine::safety::vetted::Setpoint;
 use covr_engine::time::Time;
 
-use super::controller::{Packet, SpeedCourse, TICK_MICROS};
+use super::axis::{SpeedCourse, TICK_MICROS};
+use super::controller::Packet;
 use super::parameters::MachineParameters;
 use super::settle::Settler;
 
@@ -74,3 +75,71 @@ impl Host {
 const OVERSPEED: f64 = 1.02;
 /// The most that the position loop adds to the speed fed forward, m/s.
 const CORRECTION_MPS: f64 = 0.25;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use covr_engine::frames::{Floor, Planar};
+    use covr_engine::machine::{Drive, Homing, Travel};
+    use covr_engine::time::Span;
+
+    fn host() -> Host {
+        let travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
+        Host::new(&MachineParameters::paper(travel))
+    }
+
+    fn report(x: f64, vx: f64) -> MachineReport {
+        MachineReport {
+            answered_at: Time::ZERO,
+            position: Floor::new(x, 1.0),
+            velocity: Planar::new(vx, 0.0),
+            current_amps: [0.0; 2],
+            drive: Drive::On,
+            homing: Homing::Homed,
+        }
+    }
+
+    fn setpoint(x: f64, vx: f64, ax: f64) -> Setpoint {
+        Setpoint {
+            position: Floor::new(x, 1.0),
+            velocity: Planar::new(vx, 0.0),
+            acceleration: Planar::new(ax, 0.0),
+            valid_for: Span::from_millis(40),
+        }
+    }
+
+    fn courses(packet: Packet) -> [SpeedCourse; 2] {
+        match packet {
+            Packet::Speeds { courses, ticks } => {
+                assert_eq!(ticks, 40);
+                courses
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn on_the_reference_speed_and_slope_are_fed_forward_alone() {
+        let packet = host().follow(Time::ZERO, Time::ZERO, &setpoint(1.0, 0.5, 1.2), &report(1.0, 0.5));
+        let [x, y] = courses(packet);
+        assert!((x.target_mps - 0.5).abs() < 1e-12 && (x.slope_mps2 - 1.2).abs() < 1e-12);
+        assert_eq!((y.target_mps, y.slope_mps2), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_place_behind_the_reference_adds_speed_in_proportion_up_to_a_cap() {
+        let target = |x: f64| {
+            let packet = host().follow(Time::ZERO, Time::ZERO, &setpoint(1.0, 0.5, 0.0), &report(x, 0.5));
+            courses(packet)[0].target_mps
+        };
+        assert!((target(0.99) - 0.6).abs() < 1e-9);
+        assert!((target(0.5) - 0.75).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_old_report_and_an_old_setpoint_are_carried_forward_to_now() {
+        let now = Time::from_micros(10_000);
+        let packet = host().follow(now, Time::ZERO, &setpoint(1.0, 0.5, 0.0), &report(1.0, 0.5));
+        assert!((courses(packet)[0].target_mps - 0.5).abs() < 1e-12);
+    }
+}

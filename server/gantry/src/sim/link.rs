@@ -64,3 +64,32 @@ fn pop_due<T>(queue: &mut VecDeque<(Time, T)>, now: Time) -> Option<T> {
 
 /// Room for a second of lateness at 250 Hz without allocation.
 const CAPACITY: usize = 256;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SLOW: LinkFault = LinkFault::Slow(Span::from_millis(10));
+
+    fn at(millis: i64) -> Time {
+        Time::ZERO + Span::from_millis(millis)
+    }
+
+    #[test]
+    fn a_good_link_delivers_at_once() {
+        let mut link = Link::default();
+        link.send(at(5), Packet::Home, LinkFault::None);
+        assert_eq!(link.packet_due(at(5)), Some(Packet::Home));
+        assert_eq!(link.packet_due(at(5)), None);
+    }
+
+    #[test]
+    fn a_slow_link_delivers_late_and_in_order_also_once_it_is_well_again() {
+        let mut link = Link::default();
+        link.send(at(0), Packet::Home, SLOW);
+        link.send(at(1), Packet::Release, LinkFault::None);
+        assert_eq!(link.packet_due(at(9)), None, "the later packet waits behind the slow one");
+        assert_eq!(link.packet_due(at(10)), Some(Packet::Home));
+        assert_eq!(link.packet_due(at(10)), Some(Packet::Release));
+    }
+}

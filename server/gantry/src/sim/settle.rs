@@ -34,3 +34,20 @@ const STILL_MPS: f64 = 1e-3;
 const ENTER_M: f64 = 0.4e-3;
 /// Far enough to be corrected again, m.
 const LEAVE_M: f64 = 0.9e-3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_settles_near_and_wakes_only_when_far() {
+        let mut settler = Settler::default();
+        assert!(!settler.is_settled(0.0, 0.0, 0.6e-3), "too far to settle");
+        assert!(!settler.is_settled(0.0, 0.05, 0.1e-3), "still moving");
+        assert!(settler.is_settled(0.0, 0.0, 0.1e-3));
+        assert!(settler.is_settled(0.0, 0.0, -0.6e-3), "not far enough to wake");
+        assert!(!settler.is_settled(0.0, 0.0, 1.0e-3));
+        assert!(settler.is_settled(0.0, 0.0, 0.1e-3));
+        assert!(!settler.is_settled(0.01, 0.0, 0.1e-3), "the reference moves");
+    }
+}

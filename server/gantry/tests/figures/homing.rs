@@ -25,7 +25,8 @@ proptest! {
         let mut fastest_mps = 0.0_f64;
         let mut lowest_m = f64::INFINITY;
         let mut homing = Homing::Running;
-        while homing == Homing::Running {
+        let latest = course.now + Span::from_millis(90_000);
+        while homing == Homing::Running && course.now < latest {
             homing = course.step(Action::Home).1.report.homing;
             let velocity = course.machine.true_velocity();
             let position = course.machine.true_position();

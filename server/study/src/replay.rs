@@ -1,0 +1,216 @@
+//! The whole loop on virtual time: engine, machine, the link that brings poses, and the checkers of both motions.
+//!
+//! Everything happens in one order, decided by seeds and inputs alone, so that two runs are the same bit for bit.
+//! Time moves when [`ClosedLoop::step`] is called and never otherwise.
+
+mod link;
+mod standing;
+mod trial;
+
+use std::sync::Arc;
+
+use covr_engine::engine::{Answer, Engine, EngineConfig, Outcome, Request};
+use covr_engine::event::Event;
+use covr_engine::frames::{Pose, Room};
+use covr_engine::machine::{Homing, Limits, MachineReport, Travel};
+use covr_engine::mode::{Mode, RequestKind};
+use covr_engine::observation::{Observation, PersonId, PoseSample};
+use covr_engine::safety::vetted::{Action, Vetted};
+use covr_engine::scene::{Scene, SceneSpec};
+use covr_engine::time::{Span, Time};
+use covr_gantry::contract::{Simulated, Truth};
+
+use crate::checker::{Checker, Moment, Motion, PersonNow, Rectangle, Rules, Track, Verdict};
+use crate::random::Random;
+pub use link::{LinkProfile, PoseLink};
+pub use standing::{CannotStand, bring_to};
+pub use trial::{ReachTrial, TrialOutcome, TrialProblem};
+
+/// Engine, machine, link and checkers, stepping together.
+pub struct ClosedLoop {
+    engine: Engine,
+    machine: Box<dyn Simulated>,
+    link: PoseLink,
+    checkers: [Checker; 2],
+    now: Time,
+    persons: Vec<PersonNow>,
+}
+
+/// A person's head as it really is now.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrueHead {
+    /// Who.
+    pub person: PersonId,
+    /// Where the head is.
+    pub pose: Pose<Room>,
+}
+
+/// What one step did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stepped {
+    /// When.
+    pub at: Time,
+    /// What the machine said before it.
+    pub report: MachineReport,
+    /// What the machine is told.
+    pub command: Vetted,
+    /// The column as it really was when the step began.
+    pub truth: Truth,
+}
+
+impl ClosedLoop {
+    /// A loop about a machine, at `start` on its clock. The configuration's limits and travel are the machine's.
+    pub fn new(
+        config: EngineConfig,
+        scene: Arc<Scene>,
+        machine: Box<dyn Simulated>,
+        profile: LinkProfile,
+        random: Random,
+        start: Time,
+    ) -> Self {
+        let mut rules = rules_of(config.limits, config.travel, scene.spec());
+        rules.v_h_mps = config.v_h_mps;
+        let checkers = [Checker::new(rules.clone(), Track::True), Checker::new(rules, Track::Commanded)];
+        let engine = Engine::new(config, scene);
+        Self {
+            engine,
+            machine,
+            link: PoseLink::new(profile, random),
+            checkers,
+            now: start,
+            persons: Vec::new(),
+        }
+    }
+
+    /// Ask the engine.
+    pub fn request(&mut self, request: Request) -> Answer {
+        let activated = match &request {
+            Request::ActivateScene(scene) => Some(Arc::clone(scene)),
+            _ => None,
+        };
+        let answer = self.engine.request(self.now, request);
+        if let Some(scene) = activated.filter(|_| answer.outcome == Outcome::Accepted) {
+            let rules = rules_of(self.engine.config().limits, self.engine.config().travel, scene.spec());
+            for checker in &mut self.checkers {
+                checker.change_shapes(rules.footprint.clone(), rules.keep_outs.clone());
+            }
+        }
+        answer
+    }
+
+    /// Tell the engine something at once, past the link.
+    pub fn observe(&mut self, observation: Observation) {
+        self.engine.observe(self.now, observation);
+    }
+
+    /// A headset sends a pose; the link brings it, later or never.
+    pub fn send(&mut self, person: PersonId, sample: PoseSample) {
+        self.link.send(self.now, person, sample);
+    }
+
+    /// One control period, with these people really there.
+    pub fn step(&mut self, heads: &[TrueHead]) -> Stepped {
+        let at = self.now;
+        for (person, sample) in self.link.due(at) {
+            self.engine.observe(at, Observation::Pose(person, sample));
+        }
+        let report = self.machine.read(at).report;
+        self.engine.observe(at, Observation::Machine(report));
+        self.engine.observe(at, Observation::DeadlineMet);
+        let command = self.engine.step(at);
+        // A command that the machine does not take is the machine's to report; its dead-man brakes.
+        let taken = self.machine.write(at, &command).is_ok();
+        let stepped = Stepped { at, report, command, truth: self.machine.truth() };
+        self.check(&stepped, taken, heads);
+        self.now += self.engine.config().period;
+        stepped
+    }
+
+    /// Home and arm, with nobody there; or the mode in which it stuck.
+    pub fn bring_up(&mut self, within: Span) -> Result<(), Mode> {
+        let until = self.now + within;
+        self.request(Request::Machine(RequestKind::Home, None));
+        while self.engine.mode() != Mode::Ready {
+            if self.now > until {
+                return Err(self.engine.mode());
+            }
+            self.step(&[]);
+        }
+        self.arm()
+    }
+
+    /// Arm a homed machine.
+    pub fn arm(&mut self) -> Result<(), Mode> {
+        let answer = self.request(Request::Machine(RequestKind::Arm, None));
+        if answer.outcome == Outcome::Refused { Err(self.engine.mode()) } else { Ok(()) }
+    }
+
+    /// What happened since the last call, oldest first.
+    pub fn drain_events(&mut self) -> std::vec::Drain<'_, Event> {
+        self.engine.drain_events()
+    }
+
+    /// The engine, to look at.
+    pub fn engine(&self) -> &Engine {
+        &self.engine
+    }
+
+    /// When the next step will be.
+    pub fn now(&self) -> Time {
+        self.now
+    }
+
+    /// What the checkers found of the true motion.
+    pub fn true_verdict(&self) -> &Verdict {
+        self.checkers[0].verdict()
+    }
+
+    /// What the checkers found of the commanded motion.
+    pub fn commanded_verdict(&self) -> &Verdict {
+        self.checkers[1].verdict()
+    }
+
+    fn check(&mut self, stepped: &Stepped, taken: bool, heads: &[TrueHead]) {
+        let scene = self.engine.scene();
+        self.persons.clear();
+        self.persons.extend(heads.iter().map(|head| {
+            let nearest_m = scene.nearest_enabled_object_m(&head.pose.position);
+            PersonNow {
+                id: head.person,
+                head: head.pose.position.floor(),
+                height_m: head.pose.position.z(),
+                to_enabled_object_m: nearest_m.is_finite().then_some(nearest_m),
+                contact_armed: false,
+            }
+        }));
+        let truly = Motion { position: stepped.truth.position, velocity: stepped.truth.velocity };
+        let (commanded, follows_setpoints) = match stepped.command.action() {
+            Action::Track(setpoint) if taken => {
+                (Motion { position: setpoint.position, velocity: setpoint.velocity }, true)
+            }
+            _ => (truly, false),
+        };
+        let moment = Moment {
+            at: stepped.at,
+            column: truly,
+            follows_setpoints,
+            homed: stepped.report.homing == Homing::Homed,
+            latched: matches!(self.engine.mode(), Mode::LatchedStop | Mode::Faulted),
+            persons: &self.persons,
+        };
+        let [of_truth, of_commands] = &mut self.checkers;
+        of_truth.check(&moment);
+        of_commands.check(&Moment { column: commanded, ..moment });
+    }
+}
+
+/// The rules of the checker for a machine and a scene, taken from the scene's description alone.
+pub fn rules_of(limits: Limits, travel: Travel, scene: &SceneSpec) -> Rules {
+    let carriage = Rectangle { offset: Default::default(), size_m: scene.column_size_m };
+    let props = scene.props.iter().filter(|prop| prop.size_m.norm() > 0.0);
+    let footprint = std::iter::once(carriage)
+        .chain(props.map(|prop| Rectangle { offset: prop.offset, size_m: prop.size_m }))
+        .collect();
+    let keep_outs = scene.keep_outs.iter().map(|keep_out| keep_out.shape.clone()).collect();
+    Rules::of(limits, travel, footprint, keep_outs)
+}

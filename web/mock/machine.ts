@@ -1,0 +1,272 @@
+/**
+ * A machine to look at: plausible numbers for the dashboard's development and tests. It makes no claim to be safe or
+ * true; the real one is the server's.
+ */
+import type { MachineRequest, Mode, ObjectState, Outcome, Person, SceneDocument, Snapshot, StopCause, WireEvent } from "../src/api/types";
+
+/** What the mock's owner may set up. */
+export interface MockOptions {
+  /** Why the last run left the machine latched; null for a clean start. */
+  readonly latchedBy: string | null;
+  readonly mode: Mode;
+}
+
+/** The answer to a request. */
+export interface MockAnswer {
+  readonly outcome: Outcome;
+  readonly detail: string;
+}
+
+/** One mock machine with its visitor. */
+export class MockMachine {
+  scene: SceneDocument;
+  sceneId = 1;
+  sceneVersion = 1;
+  readonly events: WireEvent[] = [];
+  readonly #told: (event: WireEvent) => void;
+  readonly #priors = new Map<string, number>();
+  #mode: Mode;
+  #stop: StopCause | null = null;
+  #modeSinceSecs = 0;
+  #atSecs = 0;
+  #generation = 0;
+  #column: [number, number] = [2, 2];
+  #velocity: [number, number] = [0, 0];
+  #awaitsConfirmation = false;
+
+  constructor(scene: SceneDocument, options: MockOptions, told: (event: WireEvent) => void) {
+    this.scene = scene;
+    this.#told = told;
+    this.#mode = options.mode;
+    this.useScene(scene);
+    if (options.latchedBy !== null) this.#latch(options.latchedBy);
+  }
+
+  /** Serves another scene. */
+  useScene(scene: SceneDocument): void {
+    this.scene = scene;
+    this.#priors.clear();
+    for (const object of scene.objects) this.#priors.set(object.id, object.prior);
+  }
+
+  /** Moves on by some seconds. */
+  step(secs: number): void {
+    this.#atSecs += secs;
+    this.#generation += 1;
+    if (this.#mode === "homing" && this.#atSecs - this.#modeSinceSecs > 1) this.#enter("ready");
+    const target = this.#mode === "following" ? this.#target() : null;
+    for (const axis of [0, 1] as const) {
+      const wanted = target === null ? 0 : Math.max(-1.1, Math.min(1.1, (target[axis] - this.#column[axis]) * 2.5));
+      const change = Math.max(-2.5 * secs, Math.min(2.5 * secs, wanted - this.#velocity[axis]));
+      this.#velocity[axis] += change;
+      this.#column[axis] += this.#velocity[axis] * secs;
+    }
+  }
+
+  /** Stops; returns the microseconds to the drive, null if it was stopped already. */
+  stop(reason: string | null): { toDriveMicros: number | null } {
+    const already = this.#mode === "latched_stop";
+    this.event("stop_pressed", reason ?? "software stop");
+    if (!already) this.#latch(`software stop: ${reason ?? "no reason given"}`);
+    return { toDriveMicros: already ? null : 1840 };
+  }
+
+  /** Asks for something else. */
+  ask(request: MachineRequest, reason: string | null): MockAnswer {
+    if (typeof request === "object") {
+      this.#awaitsConfirmation = false;
+      this.event("request_accepted", `person ${request.confirm_origin} stands on the floor mark`);
+      return { outcome: "accepted", detail: "the person is confirmed" };
+    }
+    const refusal = this.#refusal(request);
+    if (refusal !== null) {
+      this.event("request_refused", `${request}: ${refusal}`);
+      return { outcome: "refused", detail: refusal };
+    }
+    if (request === "reset" && (reason === null || reason === "")) {
+      return { outcome: "refused", detail: "a reset needs a reason" };
+    }
+    this.event("request_accepted", reason === null ? request : `${request}: ${reason}`);
+    this.#stop = null;
+    this.#enter({ home: "homing", arm: "following", disarm: "disarmed", reset: "disarmed" }[request] as Mode);
+    return { outcome: "accepted", detail: { home: "homing", arm: "armed", disarm: "drive released", reset: "disarmed, home next" }[request] };
+  }
+
+  /** Takes the visitor's headset off and on. */
+  changeOrigin(): void {
+    this.#awaitsConfirmation = true;
+    this.event("origin_changed", "Ada's tracking origin changed");
+  }
+
+  /** Sets a prior; the former one, or null for an unknown object. */
+  setPrior(id: string, prior: number): number | null {
+    const before = this.#priors.get(id);
+    if (before === undefined) return null;
+    this.#priors.set(id, prior);
+    return before;
+  }
+
+  /** Reports and keeps an event. */
+  event(kind: string, summary: string, detail: unknown = null): void {
+    const event = { at_micros: Math.round(this.#atSecs * 1e6), at: new Date().toISOString(), kind, summary, detail };
+    this.events.unshift(event);
+    this.#told(event);
+  }
+
+  /** All of it. */
+  snapshot(): Snapshot {
+    const objects = this.#objects();
+    const person = this.#person();
+    const best = this.#best(objects);
+    const target = this.#mode === "following" ? this.#target() : null;
+    const at = Math.round(this.#atSecs * 1e6);
+    const speed = Math.hypot(...this.#velocity);
+    const required = 0.62 + 0.3 * speed;
+    const rule = (id: string, title: string, reason: string, status: Snapshot["rules"][number]["status"] = "clear") => ({
+      rule: id,
+      title,
+      status,
+      reason,
+      since_micros: 0,
+    });
+    return {
+      generation: this.#generation,
+      at_micros: at,
+      mode: this.#mode,
+      mode_since_micros: Math.round(this.#modeSinceSecs * 1e6),
+      stop: this.#stop,
+      requests: (["home", "arm", "disarm", "stop", "reset"] as const).map((request) => ({
+        request,
+        refused_because: request === "stop" ? null : this.#refusal(request),
+      })),
+      rules: [
+        rule("R1", "travel", "0.42 m to the nearest limit, margin 0.02 m"),
+        rule("R2", "tracking", "Ada: pose 12 ms old, limit 500 ms"),
+        rule("R3", "separation", `Ada: ${this.#distance().toFixed(2)} m away, ${required.toFixed(2)} m required`, this.#distance() < required + 0.3 ? "limiting" : "clear"),
+        rule("R4", "software stop", this.#stop === null ? "not pressed" : this.#stop.reason, this.#stop === null ? "clear" : "breached"),
+        rule("R5", "motor current", "1.2 A of 5.0 A"),
+        rule("R6", "following error", "4 mm of 50 mm"),
+        rule("R7", "plausibility", "motion matches the command"),
+        rule("R8", "controller link", "answered within 3 ms, limit 100 ms"),
+        rule("R9", "control loop", "no deadline missed"),
+        rule("R10", "client", "Ada is connected"),
+        rule("R13", "keep-outs", "Table: 0.9 m away"),
+        rule("R15", "tracking origin", this.#awaitsConfirmation ? "Ada awaits confirmation" : "confirmed", this.#awaitsConfirmation ? "breached" : "clear"),
+        rule("R16", "arena", "somebody is tracked", "idle"),
+      ],
+      column: {
+        position_m: [...this.#column],
+        velocity_mps: [...this.#velocity],
+        commanded_m: [this.#column[0] + this.#velocity[0] * 0.05, this.#column[1] + this.#velocity[1] * 0.05],
+        proxy_m: [this.#column[0] + this.#velocity[0] * 0.2, this.#column[1] + this.#velocity[1] * 0.2],
+        target_m: target,
+        serves: this.#mode === "following" ? person.id : null,
+        committed: this.#mode === "following" ? best.id : null,
+        current_amps: [0.8 + speed, 0.6 + speed],
+        homed: this.#mode !== "faulted",
+      },
+      persons: [{ ...person, distance_m: this.#distance(), required_m: required }],
+      objects,
+      intention_rule: "paper",
+      control_loop: {
+        rate_hz: 250,
+        steps: Math.round(this.#atSecs * 250),
+        missed_deadlines: 0,
+        lateness_p99_micros: 310,
+        lateness_max_micros: 1240,
+        scheduling: "ordinary scheduling, memory not locked",
+      },
+      clients: [{ name: "mock visitor", convention: "openxr", poses: this.#generation * 3, pose_rate_hz: 90, rtt_millis: 0.6, errors: 0 }],
+      scene_id: this.sceneId,
+      session_id: 1,
+    };
+  }
+
+  #latch(reason: string): void {
+    this.#stop = {
+      rule: "R4",
+      reason,
+      clears_when: "a game master resets it with a reason",
+      since_micros: Math.round(this.#atSecs * 1e6),
+    };
+    this.#enter("latched_stop");
+  }
+
+  #enter(mode: Mode): void {
+    this.#mode = mode;
+    this.#modeSinceSecs = this.#atSecs;
+    this.event("mode_changed", `now ${mode.replace("_", " ")}`);
+  }
+
+  #refusal(request: "home" | "arm" | "disarm" | "reset"): string | null {
+    const latched = this.#mode === "latched_stop";
+    switch (request) {
+      case "home":
+        return this.#mode === "disarmed" ? null : latched ? "latched stop: reset first" : `not while ${this.#mode}`;
+      case "arm":
+        return this.#mode === "ready" ? null : latched ? "latched stop: reset first" : this.#mode === "disarmed" ? "not homed: home first" : `not while ${this.#mode}`;
+      case "disarm":
+        return this.#mode === "disarmed" ? "it is disarmed" : latched ? "latched stop: the drive is released" : null;
+      case "reset":
+        return latched || this.#mode === "faulted" ? null : "there is nothing to reset";
+    }
+  }
+
+  #person(): Person {
+    const at = this.#atSecs * 0.35;
+    const [x, y] = [2 + 1.05 * Math.sin(at), 2 + 0.9 * Math.sin(1.7 * at + 1)];
+    const yaw = Math.atan2(0.9 * 1.7 * Math.cos(1.7 * at + 1), 1.05 * Math.cos(at));
+    return {
+      id: 1,
+      name: "Ada",
+      head_m: [x, y, 1.68],
+      yaw_rad: yaw,
+      pitch_rad: -0.2,
+      pose_age_secs: 0.012,
+      tracked: true,
+      awaits_confirmation: this.#awaitsConfirmation,
+      separation_radius_m: 0.45,
+      distance_m: 0,
+      required_m: 0,
+    };
+  }
+
+  #distance(): number {
+    const head = this.#person().head_m ?? [0, 0, 0];
+    return Math.max(0, Math.hypot(head[0] - this.#column[0], head[1] - this.#column[1]) - 0.075);
+  }
+
+  #objects(): ObjectState[] {
+    const person = this.#person();
+    const head = person.head_m ?? [0, 0, 0];
+    const rows = this.scene.objects.map((object) => {
+      const [dx, dy] = [object.position[0] - head[0], object.position[1] - head[1]];
+      const away = Math.hypot(dx, dy);
+      const prior = this.#priors.get(object.id) ?? object.prior;
+      const looked = Math.exp(Math.cos(Math.atan2(dy, dx) - person.yaw_rad) - 1);
+      const offset = this.scene.props?.find((prop) => prop.id === object.prop)?.offset ?? [0, 0];
+      const place: [number, number] = [object.position[0] - offset[0], object.position[1] - offset[1]];
+      return {
+        id: object.id,
+        weight: object.enabled ? prior * (0.175 / (1 + away) + 0.825 * looked) : 0,
+        probability: 0,
+        prior,
+        column_place_m: place,
+        arrival_secs: Math.hypot(place[0] - this.#column[0], place[1] - this.#column[1]) / 0.9,
+        touch_secs: Math.max(0, away - 0.6) / 0.7,
+      };
+    });
+    const sum = rows.reduce((total, row) => total + row.weight, 0);
+    return rows.map((row) => ({ ...row, probability: sum > 0 ? row.weight / sum : 0 }));
+  }
+
+  #best(objects: readonly ObjectState[]): ObjectState {
+    const [first, ...rest] = objects;
+    if (first === undefined) throw new Error("a scene has at least one object");
+    return rest.reduce((best, object) => (object.weight > best.weight ? object : best), first);
+  }
+
+  #target(): [number, number] {
+    return this.#best(this.#objects()).column_place_m;
+  }
+}

@@ -1,0 +1,138 @@
+/**
+ * The server over HTTP: everything that the socket does not carry, and the stop's second lane. Each call has a
+ * deadline; a refusal is a `Problem` with the server's own words.
+ */
+import type { PriorChange, SceneDocument, SceneError, SceneSummary, SessionSummary, WireEvent } from "./types";
+
+/** A refusal, as RFC 9457 has it. */
+export class Problem extends Error {
+  readonly status: number;
+  readonly title: string;
+  readonly errors: readonly SceneError[];
+
+  constructor(status: number, title: string, detail: string, errors: readonly SceneError[]) {
+    super(detail);
+    this.name = "Problem";
+    this.status = status;
+    this.title = title;
+    this.errors = errors;
+  }
+}
+
+/** `POST /api/v1/stop`. */
+export async function postStop(
+  reason: string | null,
+  giveUp: AbortSignal,
+): Promise<{ acknowledged: boolean; to_drive_micros: number | null }> {
+  const response = await fetch("/api/v1/stop", {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify({ reason }),
+    signal: giveUp,
+    cache: "no-store",
+  });
+  if (!response.ok) throw await problemOf(response);
+  const body = record(await response.json());
+  return {
+    acknowledged: body["acknowledged"] === true,
+    to_drive_micros: typeof body["to_drive_micros"] === "number" ? body["to_drive_micros"] : null,
+  };
+}
+
+/** `GET /api/v1/scenes`. */
+export async function listScenes(): Promise<readonly SceneSummary[]> {
+  return (await call("GET", "/api/v1/scenes")) as readonly SceneSummary[];
+}
+
+/** `POST /api/v1/scenes`: the document as it was written, so that lines and columns in errors are the author's. */
+export async function uploadScene(text: string, author: string): Promise<{ id: number; version: number }> {
+  return (await call("POST", "/api/v1/scenes", { text, author })) as { id: number; version: number };
+}
+
+/** `PUT /api/v1/scenes/{id}`: a new version of a scene. */
+export async function replaceScene(id: number, text: string, author: string): Promise<{ id: number; version: number }> {
+  return (await call("PUT", `/api/v1/scenes/${id}`, { text, author })) as { id: number; version: number };
+}
+
+/** `GET /api/v1/scenes/{id}`. */
+export async function readScene(id: number): Promise<SceneDocument> {
+  return (await call("GET", `/api/v1/scenes/${id}`)) as SceneDocument;
+}
+
+/** `PUT /api/v1/scenes/{id}/activate`. */
+export async function activateScene(id: number, author: string): Promise<void> {
+  await call("PUT", `/api/v1/scenes/${id}/activate`, { text: "{}", author });
+}
+
+/** `PATCH /api/v1/priors`. */
+export async function changePriors(priors: Readonly<Record<string, number>>, author: string): Promise<void> {
+  await call("PATCH", "/api/v1/priors", { text: JSON.stringify(priors), author });
+}
+
+/** `GET /api/v1/priors/changes`, newest first. */
+export async function listPriorChanges(): Promise<readonly PriorChange[]> {
+  return (await call("GET", "/api/v1/priors/changes")) as readonly PriorChange[];
+}
+
+/** `GET /api/v1/sessions`, newest first. */
+export async function listSessions(): Promise<readonly SessionSummary[]> {
+  return (await call("GET", "/api/v1/sessions")) as readonly SessionSummary[];
+}
+
+/** `GET /api/v1/events`, newest first. */
+export async function listEvents(limit: number): Promise<readonly WireEvent[]> {
+  return (await call("GET", `/api/v1/events?limit=${limit}`)) as readonly WireEvent[];
+}
+
+async function call(method: string, path: string, body?: { text: string; author: string }): Promise<unknown> {
+  const response = await fetch(path, {
+    method,
+    cache: "no-store",
+    signal: AbortSignal.timeout(CALL_DEADLINE_MILLIS),
+    ...(body === undefined
+      ? {}
+      : { body: body.text, headers: { "Content-Type": "application/json", "X-Covr-Author": encodeURIComponent(body.author) } }),
+  });
+  if (!response.ok) throw await problemOf(response);
+  const text = await response.text();
+  return text === "" ? null : (JSON.parse(text) as unknown);
+}
+
+async function problemOf(response: Response): Promise<Problem> {
+  const fallback = `${response.status} ${response.statusText}`.trim();
+  let body: Record<string, unknown>;
+  try {
+    body = record(await response.json());
+  } catch {
+    return new Problem(response.status, fallback, fallback, []);
+  }
+  const title = typeof body["title"] === "string" ? body["title"] : fallback;
+  const detail = typeof body["detail"] === "string" ? body["detail"] : title;
+  const errors = Array.isArray(body["errors"]) ? body["errors"].map(sceneErrorOf) : [];
+  return new Problem(response.status, title, detail, errors);
+}
+
+function sceneErrorOf(value: unknown): SceneError {
+  const body = record(value);
+  const text = (field: string): string => {
+    const found = body[field];
+    return typeof found === "string" ? found : found === undefined ? "" : JSON.stringify(found);
+  };
+  const whole = (field: string): number | null => {
+    const found = body[field];
+    return typeof found === "number" ? found : null;
+  };
+  return {
+    path: text("path"),
+    line: whole("line"),
+    column: whole("column"),
+    found: text("found"),
+    expected: text("expected"),
+  };
+}
+
+function record(value: unknown): Record<string, unknown> {
+  return typeof value === "object" && value !== null ? (value as Record<string, unknown>) : {};
+}
+
+const CALL_DEADLINE_MILLIS = 5000;

@@ -1,0 +1,67 @@
+/**
+ * The wire's types under one roof. They are generated from the server's sources; nothing here is written by hand
+ * except the names of rows that only HTTP answers carry.
+ */
+export type {
+  Client,
+  Column,
+  ControlLoop,
+  Event as WireEvent,
+  FromDashboard,
+  KeepOutDocument,
+  MachineRequest,
+  MachineShape,
+  Mode,
+  Object as ObjectState,
+  ObjectDocument,
+  Outcome,
+  Person,
+  PropDocument,
+  RequestState,
+  RuleState,
+  RuleStatus,
+  SceneDocument,
+  ShapeDocument,
+  Snapshot,
+  StopCause,
+  ToDashboard,
+} from "./generated";
+
+/** A row of `GET /api/v1/scenes`. */
+export interface SceneSummary {
+  readonly id: number;
+  readonly name: string;
+  readonly version: number;
+  readonly author: string;
+  readonly changed_at: string;
+  readonly active: boolean;
+}
+
+/** A row of `GET /api/v1/priors/changes`, newest first. */
+export interface PriorChange {
+  readonly at: string;
+  readonly author: string;
+  readonly object: string;
+  readonly from: number;
+  readonly to: number;
+}
+
+/** A row of `GET /api/v1/sessions`, newest first. */
+export interface SessionSummary {
+  readonly id: number;
+  readonly started_at: string;
+  readonly ended_at: string | null;
+  /** How it ended; null while it runs. */
+  readonly how: string | null;
+  /** What people call the scene that was active at its start. */
+  readonly scene: string;
+}
+
+/** One finding of a refused scene. */
+export interface SceneError {
+  readonly path: string;
+  readonly line: number | null;
+  readonly column: number | null;
+  readonly found: string;
+  readonly expected: string;
+}

@@ -1,0 +1,29 @@
+import { describe, expect, it } from "vitest";
+import { lateBySecs, millis, modeWords, percent, span, timeOfDay } from "./format";
+
+describe("values", () => {
+  it.each([
+    [0.04, "0.0 s"],
+    [9.96, "10.0 s"],
+    [59.9, "59 s"],
+    [65, "1 min 05 s"],
+    [7810, "2 h 10 min"],
+    [-1, "0.0 s"],
+  ])("a span of %d s reads %s", (secs, text) => {
+    expect(span(secs)).toBe(text);
+  });
+
+  it("read with their units", () => {
+    expect(millis(1.84)).toBe("1.8 ms");
+    expect(millis(9.97)).toBe("10 ms");
+    expect(percent(0.335)).toBe("34 %");
+    expect(modeWords("latched_stop")).toBe("Latched stop");
+    expect(timeOfDay("not a moment")).toBe("not a moment");
+  });
+
+  it("are late by what the column comes after the hand", () => {
+    expect(lateBySecs(1.5, 1)).toBe(0.5);
+    expect(lateBySecs(0.5, 1)).toBe(-0.5);
+    expect(lateBySecs(0.5, null)).toBeNull();
+  });
+});

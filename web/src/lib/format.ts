@@ -1,0 +1,67 @@
+/** Decides how values read: fixed digits, so that nothing jumps about while it changes. */
+import type { Mode } from "../api/types";
+
+/** Metres with two digits, sign kept. */
+export function metres(value: number): string {
+  return value.toFixed(2);
+}
+
+/** A short span: `0.42 s`, `12 s`, `3 min 05 s`, `2 h 10 min`. */
+export function span(secs: number): string {
+  if (secs < 10) return `${Math.max(0, secs).toFixed(1)} s`;
+  const whole = Math.floor(secs);
+  if (whole < 60) return `${whole} s`;
+  if (whole < 3600) return `${Math.floor(whole / 60)} min ${pad(whole % 60)} s`;
+  return `${Math.floor(whole / 3600)} h ${pad(Math.floor((whole % 3600) / 60))} min`;
+}
+
+/** Milliseconds, one digit below ten. */
+export function millis(value: number): string {
+  return `${value < 9.95 ? value.toFixed(1) : String(Math.round(value))} ms`;
+}
+
+/** A share as whole percent. */
+export function percent(share: number): string {
+  return `${Math.round(share * 100)} %`;
+}
+
+/** A mode in the words of the glossary. */
+export function modeWords(mode: Mode): string {
+  return MODE_WORDS[mode];
+}
+
+/** The time of day of an RFC 3339 moment, in the reader's own zone; the text itself if it is none. */
+export function timeOfDay(moment: string): string {
+  const date = new Date(moment);
+  if (Number.isNaN(date.getTime())) return moment;
+  return `${pad(date.getHours())}:${pad(date.getMinutes())}:${pad(date.getSeconds())}`;
+}
+
+/** Day and time of an RFC 3339 moment, in the reader's own zone; the text itself if it is none. */
+export function dayAndTime(moment: string): string {
+  const date = new Date(moment);
+  if (Number.isNaN(date.getTime())) return moment;
+  return `${date.getFullYear()}-${pad(date.getMonth() + 1)}-${pad(date.getDate())} ${timeOfDay(moment)}`;
+}
+
+/**
+ * By how much the column would come after the hand, s; negative when it comes before. Null when nobody is there to
+ * touch.
+ */
+export function lateBySecs(arrivalSecs: number, touchSecs: number | null): number | null {
+  return touchSecs === null ? null : arrivalSecs - touchSecs;
+}
+
+function pad(value: number): string {
+  return String(value).padStart(2, "0");
+}
+
+const MODE_WORDS: Readonly<Record<Mode, string>> = {
+  disarmed: "Disarmed",
+  homing: "Homing",
+  ready: "Ready",
+  following: "Following",
+  protective_stop: "Protective stop",
+  latched_stop: "Latched stop",
+  faulted: "Faulted",
+};

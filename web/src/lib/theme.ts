@@ -1,0 +1,43 @@
+/** The canvas's colours, read from the page's own, so that both change together. */
+
+/** Colours by what they mean. */
+export interface Palette {
+  readonly ground: string;
+  readonly grid: string;
+  readonly gridWhole: string;
+  readonly text: string;
+  readonly muted: string;
+  readonly arena: string;
+  readonly travel: string;
+  readonly column: string;
+  readonly prop: string;
+  readonly object: string;
+  readonly predicted: string;
+  readonly person: string;
+  readonly danger: string;
+  readonly near: string;
+  readonly keepOut: string;
+}
+
+/** Reads the palette as it is now. */
+export function readPalette(element: Element): Palette {
+  const style = getComputedStyle(element);
+  const colour = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+  return {
+    ground: colour("ground"),
+    grid: colour("grid"),
+    gridWhole: colour("grid-whole"),
+    text: colour("text"),
+    muted: colour("muted"),
+    arena: colour("arena"),
+    travel: colour("travel"),
+    column: colour("column"),
+    prop: colour("prop"),
+    object: colour("object"),
+    predicted: colour("predicted"),
+    person: colour("person"),
+    danger: colour("danger"),
+    near: colour("warn"),
+    keepOut: colour("keep-out"),
+  };
+}

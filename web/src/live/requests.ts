@@ -1,0 +1,61 @@
+/**
+ * Requests to the machine and their answers. A request that the server does not answer in time is reported as
+ * unanswered, never repeated: unlike a stop, it may move the machine.
+ */
+import type { FromDashboard, MachineRequest, Outcome } from "../api/types";
+
+/** What came of a request. */
+export type Answer =
+  | { readonly kind: "answered"; readonly outcome: Outcome; readonly detail: string }
+  | { readonly kind: "unanswered"; readonly detail: string };
+
+/** Waits for an answer this long, ms. */
+export const ANSWER_DEADLINE_MILLIS = 3000;
+
+/** Numbers requests and matches answers. */
+export class Requests {
+  readonly #send: (message: FromDashboard) => boolean;
+  readonly #waiting = new Map<number, (answer: Answer) => void>();
+  #lastId = 0;
+
+  constructor(send: (message: FromDashboard) => boolean) {
+    this.#send = send;
+  }
+
+  /** A number that no request of this page had. */
+  newId(): number {
+    this.#lastId += 1;
+    return this.#lastId;
+  }
+
+  /** Asks, and waits for the answer. */
+  ask(request: MachineRequest, reason: string | null): Promise<Answer> {
+    const requestId = this.newId();
+    if (!this.#send({ type: "request", request_id: requestId, request, reason })) {
+      return Promise.resolve({ kind: "unanswered", detail: "not sent: no connection to the server" });
+    }
+    return new Promise((resolve) => {
+      const deadline = setTimeout(() => {
+        this.#waiting.delete(requestId);
+        resolve({ kind: "unanswered", detail: `no answer within ${ANSWER_DEADLINE_MILLIS / 1000} s` });
+      }, ANSWER_DEADLINE_MILLIS);
+      this.#waiting.set(requestId, (answer) => {
+        clearTimeout(deadline);
+        this.#waiting.delete(requestId);
+        resolve(answer);
+      });
+    });
+  }
+
+  /** An answer arrived. */
+  answered(requestId: number, outcome: Outcome, detail: string): void {
+    this.#waiting.get(requestId)?.({ kind: "answered", outcome, detail });
+  }
+
+  /** The connection went: whoever waits is told so now. */
+  lost(): void {
+    for (const tell of [...this.#waiting.values()]) {
+      tell({ kind: "unanswered", detail: "the connection was lost before the answer" });
+    }
+  }
+}
