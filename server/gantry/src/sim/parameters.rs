@@ -157,7 +157,8 @@ impl AxisParameters {
     ///
     /// Ratio and pulley (chosen): 7 and 30 teeth of 5 mm: 1.1 m/s is 3080 rpm. Moving mass (chosen): what X moves and
     /// a 4 m beam of 2.25 kg/m with the X drive, 3 kg. At 1.25 m/s2 and 1.1 m/s it takes about 3.7 A, braking at
-    /// 2.5 m/s2 about 3.8 A: below the 5 A of R5 with a margin of a quarter. Friction and encoder as for X.
+    /// 2.5 m/s2 about 3.8 A, in simulation with peaks of 4.2 A at changes of acceleration: below the 5 A of R5. Friction
+    /// and encoder as for X.
     pub const PAPER_Y: Self = Self {
         motor: MotorParameters::GR_63X55,
         gear_ratio: 7.0,
