@@ -89,6 +89,8 @@ pub struct Engine {
     /// Since when no rule has demanded a protective stop.
     quiet_since: Option<Time>,
     stop: Option<StopCause>,
+    /// Measured speed when the mode was entered, m/s.
+    speed_then_mps: f64,
     arena_confirmed_clear: bool,
     persons: Vec<Person>,
     threats: Vec<Threat>,
@@ -114,6 +116,7 @@ impl Engine {
             resumes: Mode::Following,
             quiet_since: None,
             stop: None,
+            speed_then_mps: 0.0,
             arena_confirmed_clear: false,
             persons: Vec::new(),
             threats: Vec::new(),
@@ -312,12 +315,18 @@ impl Engine {
         }
     }
 
-    /// Brake at the limit; once at rest (or long since unheard), release.
+    /// Brake at the limit, then release: at rest, or when the brake does not bite (a runaway ends without power alone).
     fn stop_and_release(&self, now: Time) -> Vetted {
-        let drive_is_on = self.report.is_some_and(|r| r.drive == Drive::On);
+        let Some(report) = self.report.filter(|r| r.drive == Drive::On) else { return Vetted::release(now) };
+        let stopped_for = now - self.mode_since;
         let rests = self.rests_since.is_some_and(|since| now - since >= REST_BEFORE_RELEASE);
-        let long_enough = now - self.mode_since > LONGEST_BRAKE;
-        if drive_is_on && !rests && !long_enough { Vetted::hold(now) } else { Vetted::release(now) }
+        let runs_away =
+            stopped_for > BRAKE_BITES_WITHIN && report.velocity.norm() > self.speed_then_mps + RUNS_AWAY_MPS;
+        if rests || runs_away || stopped_for > LONGEST_BRAKE {
+            Vetted::release(now)
+        } else {
+            Vetted::hold(now)
+        }
     }
 
     /// Nobody can be met at creep speed, whichever way homing goes. Before the machine is homed its place is what it
@@ -430,6 +439,7 @@ impl Engine {
             self.mode = to;
         }
         self.mode_since = now;
+        self.speed_then_mps = self.report.map_or(0.0, |r| r.velocity.norm());
     }
 
     fn person(&self, id: PersonId) -> Option<&Person> {
@@ -461,6 +471,10 @@ const AT_REST_MPS: f64 = 0.01;
 const REST_BEFORE_RELEASE: Span = Span::from_millis(100);
 /// No brake of this machine takes longer; a machine that still moves after it is let go all the same.
 const LONGEST_BRAKE: Span = Span::from_millis(1500);
+/// After so long a brake shows in the measured speed.
+const BRAKE_BITES_WITHIN: Span = Span::from_millis(60);
+/// Faster by this than when the stop began, m/s.
+const RUNS_AWAY_MPS: f64 = 0.05;
 /// A machine that is not homed stands within this of where it says, m.
 const PARKED_WITHIN_M: f64 = 0.3;
 

@@ -96,8 +96,11 @@ impl Travel {
         Floor::new(point.x.clamp(self.min.x, self.max.x), point.y.clamp(self.min.y, self.max.y))
     }
 
-    /// How far inside the point is, metres; negative outside.
+    /// How far inside the point is, metres; negative outside, and for a point that is none.
     pub fn depth_m(self, point: Floor) -> f64 {
+        if !point.is_finite() {
+            return f64::NEG_INFINITY;
+        }
         let x = (point.x - self.min.x).min(self.max.x - point.x);
         let y = (point.y - self.min.y).min(self.max.y - point.y);
         x.min(y)

@@ -3,9 +3,10 @@
 //! It proposes velocities, best first. It never makes a command: safety takes the first proposal that it can allow.
 
 pub mod proxy;
+pub mod way;
 
 use crate::frames::{Floor, Planar};
-use crate::machine::{AxisLimits, Limits};
+use crate::machine::{AxisLimits, Limits, Travel};
 use crate::safety::separation::Threat;
 
 /// Velocities to try, best first.
@@ -16,7 +17,7 @@ pub struct Proposals {
 }
 
 impl Proposals {
-    /// Try `wanted`, then slower and around, by how much of the way to `target` each makes; at last a retreat.
+    /// Try what the proxy wants, or the way around whoever stands between; then slower and aside; at last a retreat.
     ///
     /// `speed_cap_mps` binds every proposal. The side taken last is preferred, so that a detour does not dither.
     pub fn fill(
@@ -26,25 +27,34 @@ impl Proposals {
         column: Floor,
         target: Floor,
         threats: &[Threat],
+        inside: &Travel,
     ) {
         self.velocities.clear();
         let wanted = wanted.capped(speed_cap_mps);
-        self.velocities.push(wanted);
-        let to_target = target - column;
-        if let Some(heading) = to_target.unit() {
-            let cruise = wanted.norm().max(DETOUR_SPEED_MPS).min(speed_cap_mps).min(2.0 * to_target.norm());
-            let preferred = if self.side == 0.0 { better_side(column, heading, threats) } else { self.side };
-            for (angle_deg, share) in DETOURS {
-                for side in [preferred, -preferred] {
-                    self.velocities
-                        .push(heading.turned(side * f64::to_radians(angle_deg)) * (share * cruise));
-                    if angle_deg == 0.0 {
-                        break;
-                    }
+        let Some(way) = way::find(column, target, self.side, threats, inside) else {
+            self.velocities.push(wanted);
+            return;
+        };
+        if way.side == 0.0 {
+            self.velocities.push(wanted);
+        }
+        self.side = way.side;
+        let left_m = target.distance_m(column);
+        let cruise =
+            if way.side == 0.0 { wanted.norm().max(ASIDE_MPS).min(2.0 * left_m) } else { CRUISE_MPS };
+        let cruise = cruise.min(speed_cap_mps);
+        // Aside means away from the person first.
+        let outward = if way.side == 0.0 { 1.0 } else { way.side };
+        for (angle_deg, share) in FAN {
+            for side in [outward, -outward] {
+                let velocity = way.heading.turned(side * f64::to_radians(angle_deg)) * (share * cruise);
+                self.velocities.push(along_the_walls(velocity, column, inside));
+                if angle_deg == 0.0 {
+                    break;
                 }
             }
         }
-        if to_target.norm() > IN_PLACE_M {
+        if left_m > IN_PLACE_M {
             self.velocities.extend(retreat(column, threats).map(|v| v.capped(speed_cap_mps)));
         }
     }
@@ -53,17 +63,17 @@ impl Proposals {
     pub fn velocities(&self) -> &[Planar] {
         &self.velocities
     }
+}
 
-    /// Remember which way round was taken.
-    pub fn took(&mut self, index: usize, column: Floor, target: Floor) {
-        let Some(taken) = self.velocities.get(index).and_then(|v| v.unit()) else { return };
-        let turn = (target - column).cross(taken);
-        if index == 0 {
-            self.side = 0.0;
-        } else if turn.abs() > 1e-3 {
-            self.side = turn.signum();
-        }
-    }
+/// No faster towards a wall than the column can stop before it.
+fn along_the_walls(velocity: Planar, column: Floor, inside: &Travel) -> Planar {
+    let axis = |v: f64, p: f64, min: f64, max: f64| {
+        v.clamp(-WALL_PER_SEC * (p - min).max(0.0), WALL_PER_SEC * (max - p).max(0.0))
+    };
+    Planar::new(
+        axis(velocity.x, column.x, inside.min.x, inside.max.x),
+        axis(velocity.y, column.y, inside.min.y, inside.max.y),
+    )
 }
 
 /// How long the column needs to a place from rest at its limits, s: the slower axis of two trapezoids.
@@ -80,22 +90,6 @@ pub fn travel_secs(from: Floor, to: Floor, limits: &Limits) -> f64 {
     axis((to.x - from.x).abs(), &limits.x).max(axis((to.y - from.y).abs(), &limits.y))
 }
 
-/// Pass behind: on the side that the nearest person on the way moves away from; standing still, the shorter way round.
-fn better_side(column: Floor, heading: Planar, threats: &[Threat]) -> f64 {
-    let ahead = threats.iter().filter(|t| (t.head - column).dot(heading) > 0.0);
-    let nearest = ahead.min_by(|a, b| a.head.distance_m(column).total_cmp(&b.head.distance_m(column)));
-    let Some(threat) = nearest else { return 1.0 };
-    let drift = heading.cross(threat.velocity);
-    let offset = heading.cross(threat.head - column);
-    if drift.abs() > 0.15 {
-        -drift.signum()
-    } else if offset >= 0.0 {
-        -1.0
-    } else {
-        1.0
-    }
-}
-
 /// Directly away from the nearest person within reach of the column.
 fn retreat(column: Floor, threats: &[Threat]) -> Option<Planar> {
     let near = threats.iter().filter(|t| t.head.distance_m(column) < RETREAT_WITHIN_M);
@@ -103,27 +97,32 @@ fn retreat(column: Floor, threats: &[Threat]) -> Option<Planar> {
     (column - nearest.head).unit().map(|away| away * RETREAT_SPEED_MPS)
 }
 
-/// Angle from the straight way, degrees, and share of the cruising speed; by progress made, best first.
-const DETOURS: [(f64, f64); 16] = [
+/// Angle from the way, degrees, and share of the cruising speed; by progress made, best first.
+const FAN: [(f64, f64); 17] = [
+    (0.0, 1.0),
     (20.0, 1.0),
+    (0.0, 0.75),
     (40.0, 1.0),
-    (0.0, 0.7),
     (20.0, 0.7),
     (60.0, 1.0),
+    (0.0, 0.5),
     (40.0, 0.6),
-    (0.0, 0.4),
     (75.0, 1.0),
     (60.0, 0.6),
-    (30.0, 0.35),
-    (90.0, 0.8),
+    (25.0, 0.35),
     (0.0, 0.18),
+    (90.0, 0.8),
     (80.0, 0.5),
     (50.0, 0.18),
     (90.0, 0.35),
-    (100.0, 0.6),
+    (110.0, 0.6),
 ];
-/// A detour is worth at least this speed, m/s.
-const DETOUR_SPEED_MPS: f64 = 0.6;
+/// On the way around somebody, m/s.
+const CRUISE_MPS: f64 = 1.1;
+/// Aside of a straight way at least, m/s.
+const ASIDE_MPS: f64 = 0.6;
+/// A metre from a wall leaves this much speed towards it, 1/s.
+const WALL_PER_SEC: f64 = 2.5;
 /// Closer than this to where it is wanted, the column stays, m.
 const IN_PLACE_M: f64 = 0.1;
 /// Somebody nearer than this is worth leaving when the column cannot go where it is wanted, m.
@@ -136,11 +135,14 @@ mod tests {
     use super::*;
     use crate::observation::PersonId;
 
-    fn threat(x: f64, y: f64, vy: f64) -> Threat {
+    const ROOM: Travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
+
+    fn threat(x: f64, y: f64) -> Threat {
+        let velocity = Planar::ZERO;
         Threat {
             person: PersonId(1),
             head: Floor::new(x, y),
-            velocity: Planar::new(0.0, vy),
+            velocity,
             age_secs: 0.02,
             near_object: false,
             low: false,
@@ -148,19 +150,11 @@ mod tests {
     }
 
     #[test]
-    fn a_detour_passes_behind_a_walking_person() {
-        let (column, heading) = (Floor::new(0.0, 0.0), Planar::new(1.0, 0.0));
-        assert_eq!(better_side(column, heading, &[threat(1.0, 0.0, 0.8)]), -1.0);
-        assert_eq!(better_side(column, heading, &[threat(1.0, 0.0, -0.8)]), 1.0);
-        assert_eq!(better_side(column, heading, &[threat(1.0, -0.2, 0.0)]), 1.0, "the shorter way round");
-    }
-
-    #[test]
     fn no_proposal_is_faster_than_the_cap() {
         let mut proposals = Proposals::default();
-        let (column, target) = (Floor::new(0.0, 0.0), Floor::new(3.0, 1.0));
-        proposals.fill(Planar::new(1.1, 0.4), 0.3, column, target, &[threat(0.8, 0.0, 0.0)]);
-        assert!(proposals.velocities().len() > DETOURS.len());
+        let (column, target) = (Floor::new(0.5, 0.5), Floor::new(3.0, 1.0));
+        proposals.fill(Planar::new(1.1, 0.4), 0.3, column, target, &[threat(1.3, 0.5)], &ROOM);
+        assert!(proposals.velocities().len() > FAN.len());
         assert!(proposals.velocities().iter().all(|v| v.norm() <= 0.3 + 1e-12));
     }
 

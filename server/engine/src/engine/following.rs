@@ -145,11 +145,8 @@ impl Following {
         self.proxy.roll(target, here, heads.chain(rims), separation.limits, &inside, period.secs());
         let soft_start_mps = SOFT_START_MPS + SOFT_START_MPS2 * since.secs();
         let wanted = self.proxy.followed_from(here);
-        self.proposals.fill(wanted, soft_start_mps, here, target, separation.threats);
+        self.proposals.fill(wanted, soft_start_mps, here, target, separation.threats, &inside);
         let choice = governor.govern(self.proposals.velocities(), measured, separation, period);
-        if let Some(index) = choice.taken {
-            self.proposals.took(index, here, target);
-        }
         self.conflict = choice.conflict;
     }
 

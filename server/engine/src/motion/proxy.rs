@@ -101,7 +101,7 @@ const LEASH_M: f64 = 0.25;
 /// From here on a bump is felt, m.
 const INFLUENCE_M: f64 = 0.6;
 /// A metre of gap allows this much speed inward; a metre inside pushes as fast outward, 1/s.
-const REPULSION_PER_SEC: f64 = 2.5;
+const REPULSION_PER_SEC: f64 = 2.0;
 /// The share of the blocked motion that goes along the rim instead.
 const SLIDE: f64 = 0.8;
 
