@@ -1,3 +1,4 @@
+import { fileURLToPath } from "node:url";
 import { defineConfig } from "vitest/config";
 import solid from "vite-plugin-solid";
 import { mockServer } from "./mock/plugin.ts";
@@ -20,6 +21,8 @@ export default defineConfig({
   },
   test: {
     environment: "node",
+    // Components are tested as a browser would load them; the mock's sockets are Node's all the same.
+    alias: { ws: fileURLToPath(import.meta.resolve("ws")) },
     include: ["src/**/*.test.{ts,tsx}", "mock/**/*.test.ts"],
     server: { deps: { inline: [/solid-js/, /@solidjs/] } },
   },

@@ -194,7 +194,8 @@ function isRequest(name: string | undefined): name is Extract<MachineRequest, st
 
 function reasonOf(body: string): string | null {
   if (body === "") return null;
-  return (JSON.parse(body) as { readonly reason: string | null }).reason;
+  const { reason } = JSON.parse(body) as { readonly reason?: string | null };
+  return reason === undefined ? null : reason;
 }
 
 function send(client: WebSocket, message: ToDashboard): void {

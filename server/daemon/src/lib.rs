@@ -1,1 +1,24 @@
-//! The covr daemon.
+//! The covr daemon: sockets, HTTP, store, configuration, tasks. It carries; it decides nothing about motion.
+//!
+//! - [`control`]: the one thread that owns engine and gantry.
+//! - [`recorder`], [`store`]: what outlives the process.
+//! - [`http`], [`ws`]: the ways in and out.
+//! - [`serve`]: puts them together, and takes them apart with the machine at rest first.
+
+pub mod app;
+pub mod cli;
+pub mod clients;
+pub mod clock;
+pub mod config;
+pub mod control;
+pub mod http;
+pub mod live;
+pub mod logs;
+pub mod persons;
+pub mod recorder;
+pub mod serve;
+pub mod stage;
+pub mod store;
+pub mod visitor;
+pub mod web;
+pub mod ws;

@@ -1,2 +1,98 @@
-//! The covr binary.
-fn main() {}
+//! The covr binary: reads the command line and the configuration, and leaves with a code.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use clap::Parser;
+use covr_server::cli::{Check, Cli, Command, Serve, Visitor};
+use covr_server::config::{self, Config};
+use covr_server::serve::{Reach, Server, stop_at_signal, told_by_signal};
+use covr_server::{logs, visitor};
+use covr_wire::scene::parse_scene;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let done = match cli.command.unwrap_or(Command::Serve(cli.serve)) {
+        Command::Serve(options) => serve(options),
+        Command::Check(options) => return check(&options),
+        Command::Visitor(options) => visit(options),
+        Command::Config => print(&config::reference(&Config::default())),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            complain(&format!("covr: {error:#}"));
+            ExitCode::from(FAILED)
+        }
+    }
+}
+
+fn serve(options: Serve) -> anyhow::Result<()> {
+    let mut config = config::load(options.config.as_deref(), std::env::vars())?;
+    config.server.bind = options.bind.unwrap_or(config.server.bind);
+    config.server.database = options.database.unwrap_or(config.server.database);
+    config.log.format = options.log_format.unwrap_or(config.log.format);
+    let _logs = logs::start(&config.log)?;
+    let reach = if options.insecure_lan { Reach::InsecureLan } else { Reach::ThisMachine };
+    runtime()?.block_on(async {
+        let server = Server::start(config, reach).await?;
+        tokio::spawn(stop_at_signal(server.app().clone()));
+        server.run_until(told_by_signal()).await
+    })
+}
+
+fn visit(options: Visitor) -> anyhow::Result<()> {
+    let _logs = logs::start(&Config::default().log)?;
+    runtime()?.block_on(async {
+        tokio::select! {
+            done = visitor::run(options) => done,
+            _ = told_by_signal() => Ok(()),
+        }
+    })
+}
+
+fn check(options: &Check) -> ExitCode {
+    let name = options.scene.display();
+    let text = match std::fs::read(&options.scene) {
+        Ok(text) => text,
+        Err(error) => {
+            complain(&format!("{name}: {error}"));
+            return ExitCode::from(FAILED);
+        }
+    };
+    match parse_scene(&text) {
+        Ok((document, _)) => {
+            let _ = print(&format!(
+                "{name}: \"{}\" is good: {} objects\n",
+                document.name,
+                document.objects.len()
+            ));
+            ExitCode::SUCCESS
+        }
+        Err(errors) => {
+            for error in errors {
+                complain(&format!("{name}: {error}"));
+            }
+            ExitCode::from(INVALID)
+        }
+    }
+}
+
+fn runtime() -> anyhow::Result<tokio::runtime::Runtime> {
+    tokio::runtime::Builder::new_multi_thread().enable_all().build().context("the asynchronous runtime")
+}
+
+fn print(text: &str) -> anyhow::Result<()> {
+    Ok(std::io::stdout().lock().write_all(text.as_bytes())?)
+}
+
+fn complain(text: &str) {
+    // With standard error closed there is nobody to tell; the exit code still says it.
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
+}
+
+/// A scene or a file is not good.
+const INVALID: u8 = 1;
+/// The command could not do its work.
+const FAILED: u8 = 2;

@@ -1,6 +1,7 @@
-//! A made-up visitor for machines without recordings: reads, searches, walks, reaches and dwells, for ever.
+//! A made-up visitor for machines without recordings: reads, searches, walks, reaches, dwells and returns, for ever.
 //!
-//! From the end of reading to the arrival its horizontal speed has the percentiles of the recorded people
+//! As in the recorded sessions everything begins in the middle of the room: there the visitor reads what to do and looks
+//! for it, and there it returns. From half a second before it sets out to the arrival its horizontal speed has the percentiles of the recorded people
 //! (p50 0.26, p95 0.87, p99 1.12, greatest 1.58 m/s). It walks through the column if that is in its way: a visitor
 //! who cannot see the machine does too. The seed decides everything.
 
@@ -19,7 +20,7 @@ use crate::random::Random;
 pub enum Phase {
     /// Stands and reads what to do next.
     Reads,
-    /// Stands and looks about for the goal.
+    /// Stands and looks about for the goal, and at it.
     Searches,
     /// Walks to the goal.
     Walks,
@@ -27,6 +28,8 @@ pub enum Phase {
     Reaches,
     /// The hand is at the object.
     Dwells,
+    /// Walks back to the middle of the room.
+    Returns,
 }
 
 /// The visitor at one moment.
@@ -38,7 +41,7 @@ pub struct VisitorSample {
     pub pose: Pose<Room>,
     /// What it does.
     pub phase: Phase,
-    /// Which object it is after, by index in the scene; none on a stroll in a scene with a single object.
+    /// Which object it is after, by index in the scene; none while it returns and reads.
     pub goal: Option<usize>,
 }
 
@@ -63,6 +66,7 @@ pub struct Visitor {
     phase: Phase,
     phase_ends: Time,
     goal: Option<VisitorGoal>,
+    last_object: Option<usize>,
     walk: Walk,
     view: View,
     gaze: Gaze,
@@ -101,7 +105,7 @@ impl Visitor {
         Self::new(scene.arena, goals, hz, seed)
     }
 
-    /// A visitor of these goals, who starts in the middle of the arena. Without goals it strolls.
+    /// A visitor of these goals, who starts in the middle of the arena. Without goals it stays about there.
     pub fn new(arena: Travel, goals: Vec<VisitorGoal>, hz: f64, seed: u64) -> Self {
         let mut random = Random::seeded(seed);
         let middle = arena.centre();
@@ -116,6 +120,7 @@ impl Visitor {
             phase: Phase::Reads,
             phase_ends: Time::ZERO,
             goal: None,
+            last_object: None,
             walk: Walk { from: middle, to: middle, bow_m: 0.0, starts: Time::ZERO, secs: 1.0 },
             view: View { yaw_rad, pitch_rad: 0.0 },
             gaze: Gaze::Along { yaw_rad, pitch_rad: 0.0 },
@@ -135,7 +140,8 @@ impl Visitor {
                 Phase::Searches => Phase::Walks,
                 Phase::Walks => Phase::Reaches,
                 Phase::Reaches => Phase::Dwells,
-                Phase::Dwells => Phase::Reads,
+                Phase::Dwells => Phase::Returns,
+                Phase::Returns => Phase::Reads,
             };
             self.begin(next, self.phase_ends);
         }
@@ -157,22 +163,29 @@ impl Visitor {
             Phase::Searches => {
                 self.choose_goal();
                 self.gaze_until = at;
-                self.random.between(0.4, 1.2)
+                self.random.between(2.0, 4.0)
             }
             Phase::Walks => self.set_out(at),
-            Phase::Reaches => self.random.between(0.3, 0.6),
+            Phase::Reaches => self.random.between(0.2, 0.5),
             Phase::Dwells => self.random.between(1.0, 3.0),
+            Phase::Returns => {
+                self.last_object = self.goal.map(|goal| goal.object);
+                self.goal = None;
+                self.set_out(at)
+            }
         };
         self.phase = phase;
         self.phase_ends = at + Span::from_secs(secs);
     }
 
-    /// Another object than the last; with a single one every other walk is a stroll.
+    /// Another object than the last, where there is another.
     fn choose_goal(&mut self) {
-        let last = self.goal.map(|goal| goal.object);
-        let others: Vec<VisitorGoal> =
-            self.goals.iter().copied().filter(|goal| Some(goal.object) != last).collect();
-        self.goal = others.get(self.random.below(others.len())).copied();
+        let others = self.goals.iter().copied().filter(|goal| Some(goal.object) != self.last_object);
+        let mut choices: Vec<VisitorGoal> = others.collect();
+        if choices.is_empty() {
+            choices.clone_from(&self.goals);
+        }
+        self.goal = choices.get(self.random.below(choices.len())).copied();
     }
 
     /// Plan the walk; how long it takes, s.
@@ -181,9 +194,9 @@ impl Visitor {
         let to = match self.goal {
             Some(goal) => self.standing_place(from, goal.position.floor()),
             None => {
-                let reach = self.arena.shrunk(ARENA_EDGE_M);
-                let x = self.random.between(reach.min.x, reach.max.x);
-                Floor::new(x, self.random.between(reach.min.y, reach.max.y))
+                let middle = self.arena.centre();
+                let off = Planar::new(self.random.between(0.0, HOME_RADIUS_M), 0.0);
+                middle + off.turned(self.random.between(-PI, PI))
             }
         };
         let distance_m = from.distance_m(to);
@@ -194,9 +207,10 @@ impl Visitor {
             .min(PEAK_PER_ROOT_M * distance_m.sqrt().max(0.1));
         let secs = (1.875 * distance_m / peak_mps).max(0.3);
         self.walk = Walk { from, to, bow_m, starts: at, secs };
-        if let Some(goal) = self.goal {
-            self.gaze = Gaze::At(goal.position);
-        }
+        self.gaze = match self.goal {
+            Some(goal) => Gaze::At(goal.position),
+            None => Gaze::At(Point::new(to.x, to.y, self.height_m)),
+        };
         secs
     }
 
@@ -285,6 +299,8 @@ impl Iterator for Visitor {
 
 /// How far from an object's centre the head stops, m (jov2023: median 0.6 m at the reach).
 const STOPS_AT_M: f64 = 0.6;
+/// How far from the middle of the room the visitor reads, m (jov2023: trials start within 0.3 m of it).
+const HOME_RADIUS_M: f64 = 0.3;
 /// How near to the arena's edge a head comes, m.
 const ARENA_EDGE_M: f64 = 0.15;
 /// Median of the fastest moment of a walk, m/s.

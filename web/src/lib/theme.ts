@@ -1,6 +1,6 @@
 /** The canvas's colours, read from the page's own, so that both change together. */
 
-/** Colours by what they mean. */
+/** Colours by what they mean, each as #rrggbb. */
 export interface Palette {
   readonly ground: string;
   readonly grid: string;

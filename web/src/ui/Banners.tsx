@@ -35,7 +35,7 @@ export function Banners(props: { readonly live: Live }): JSX.Element {
       <Show when={stopped()}>
         {(stop) => (
           <div
-            class="bar bar-stop"
+            class="bar bar-stop fades"
             classList={{ protective: props.live.snapshot()?.mode === "protective_stop" }}
             role="alert"
             data-testid="stop-cause"

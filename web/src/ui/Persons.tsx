@@ -29,7 +29,7 @@ export function Persons(props: { readonly live: Live }): JSX.Element {
                 <Show when={person.head_m !== null}>
                   <div class="person-distance">
                     <span>
-                      {metres(person.distance_m)} m away, {metres(person.required_m)} m required, r{" "}
+                      {metres(person.distance_m)} m away, {metres(person.required_m)} m due, r{" "}
                       {metres(person.separation_radius_m)} m
                     </span>
                     <meter

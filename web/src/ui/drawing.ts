@@ -251,8 +251,8 @@ function drawPerson(view: View, person: Person, served: boolean): void {
   const heading = -person.yaw_rad;
   const fade = context.createRadialGradient(px, py, 0, px, py, reach);
   fade.addColorStop(0, colour);
-  // Towards the same colour unseen: plain `transparent` is black, and greys the fading.
-  fade.addColorStop(1, `color-mix(in srgb, ${colour} 0%, transparent)`);
+  // Towards the same colour (#rrggbb) unseen: plain `transparent` is black, and greys the fading.
+  fade.addColorStop(1, `${colour}00`);
   context.globalAlpha = 0.45;
   context.fillStyle = fade;
   context.beginPath();

@@ -1,0 +1,128 @@
+//! What every handler shares, and the acts that HTTP and dashboards have in common.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use covr_engine::mode::RequestKind;
+use covr_engine::observation::PersonId;
+use covr_engine::{Answer, Outcome, Request};
+use covr_wire::dashboard::request_name;
+use metrics_exporter_prometheus::PrometheusHandle;
+use serde_json::json;
+use tokio::sync::{Semaphore, watch};
+
+use crate::clients::Clients;
+use crate::clock::Clock;
+use crate::config::Config;
+use crate::control::{Control, NotDelivered, NotReached, StopLaneName};
+use crate::persons::Persons;
+use crate::recorder::{Recorder, Settled};
+use crate::stage::Stage;
+use crate::store::Store;
+
+/// The server's shared state.
+pub struct App {
+    /// The configuration.
+    pub config: Config,
+    /// The clock.
+    pub clock: Clock,
+    /// The control thread.
+    pub control: Control,
+    /// The database.
+    pub store: Store,
+    /// The recorder.
+    pub recorder: Recorder,
+    /// Who is who.
+    pub persons: Arc<Persons>,
+    /// The active scene.
+    pub stage: Arc<Stage>,
+    /// Connected VR clients.
+    pub clients: Arc<Clients>,
+    /// Places for dashboards.
+    pub dashboard_seats: Arc<Semaphore>,
+    /// Newest snapshot for dashboards, as text.
+    pub frames: watch::Receiver<Arc<str>>,
+    /// Why the server closes, once it does.
+    pub closing: watch::Receiver<Option<String>>,
+    /// The metrics.
+    pub prometheus: PrometheusHandle,
+}
+
+/// Who asks, and by what way.
+#[derive(Debug, Clone)]
+pub struct Asker {
+    /// `http`, `dashboard`.
+    pub by: &'static str,
+    /// The name given, or `anonymous`.
+    pub author: String,
+}
+
+impl App {
+    /// Put a request to the machine, record it with its author, and wait until that is stored.
+    pub async fn request(
+        &self,
+        asker: &Asker,
+        kind: RequestKind,
+        reason: Option<String>,
+    ) -> Result<Answer, NotDelivered> {
+        let name = request_name(kind);
+        self.ask_recorded(asker, name, Request::Machine(kind, reason.clone()), reason).await
+    }
+
+    /// A game master says that the person stands on the floor mark.
+    pub async fn confirm_origin(&self, asker: &Asker, person: PersonId) -> Result<Answer, NotDelivered> {
+        let name = format!("confirm_origin of {}", self.persons.name(person));
+        self.ask_recorded(asker, &name, Request::ConfirmOrigin(person), None).await
+    }
+
+    /// Press the software stop; the time from `received_at` to the braking command at the drive. It is
+    /// recorded before this returns, or given up after [`LONGEST_RECORDING`]: stopping does not wait for a disk.
+    pub async fn stop(
+        &self,
+        asker: &Asker,
+        lane: StopLaneName,
+        reason: Option<String>,
+        received_at: Instant,
+    ) -> Result<Duration, NotReached> {
+        let words = reason.clone().unwrap_or_else(|| format!("software stop by {}", asker.author));
+        let reached = self.control.stop(lane, words, received_at).await;
+        let micros = reached.as_ref().ok().map(|d| d.as_micros() as u64);
+        let summary = match micros {
+            Some(micros) => format!("{} pressed stop; at the drive after {micros} us", asker.author),
+            None => format!("{} pressed stop; the drive did not acknowledge", asker.author),
+        };
+        self.recorder.record(
+            "stop_pressed",
+            summary,
+            json!({ "author": asker.author, "by": asker.by, "reason": reason, "to_drive_micros": micros }),
+        );
+        if tokio::time::timeout(LONGEST_RECORDING, self.recorder.settled()).await != Ok(Settled::Stored) {
+            tracing::error!("a stop could not be stored; it will not survive a restart");
+        }
+        reached
+    }
+
+    async fn ask_recorded(
+        &self,
+        asker: &Asker,
+        name: &str,
+        request: Request,
+        reason: Option<String>,
+    ) -> Result<Answer, NotDelivered> {
+        let answer = self.control.ask(request).await?;
+        let kind = if answer.outcome == Outcome::Refused { "request_refused" } else { "request_accepted" };
+        let outcome = if answer.outcome == Outcome::Refused { "refused" } else { "accepted" };
+        self.recorder.record(
+            kind,
+            format!("{name} by {}: {outcome}: {}", asker.author, answer.detail),
+            json!({ "request": name, "author": asker.author, "by": asker.by, "reason": reason, "detail": answer.detail }),
+        );
+        if self.recorder.settled().await == Settled::Lost {
+            tracing::error!(request = name, "an accepted request could not be stored");
+        }
+        Ok(answer)
+    }
+}
+
+/// Longest wait for the record of a stop before it is acknowledged all the same.
+const LONGEST_RECORDING: Duration = Duration::from_millis(500);

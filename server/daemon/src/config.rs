@@ -1,0 +1,196 @@
+//! The configuration: one TOML file, every key documented, unknown keys refused by name.
+//!
+//! Values are right once loaded: each key knows what it accepts, and a refusal names the key, what was
+//! found and what was expected. `COVR_SECTION__KEY` in the environment overrides the file.
+
+mod keys;
+mod load;
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use covr_engine::frames::Floor;
+use covr_engine::intention::RuleName;
+use covr_engine::machine::{AxisLimits, Limits, Travel};
+
+pub use keys::{Key, all as keys};
+pub use load::{ConfigError, load, load_text, reference};
+
+/// Everything that can be configured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Config {
+    /// Sockets and files.
+    pub server: Server,
+    /// The control loop.
+    pub control: Control,
+    /// The machine.
+    pub machine: Machine,
+    /// What is known of people.
+    pub people: People,
+    /// VR clients.
+    pub clients: Clients,
+    /// Dashboards.
+    pub dashboards: Dashboards,
+    /// Logs.
+    pub log: Log,
+}
+
+/// Sockets and files.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Server {
+    /// Where to listen.
+    pub bind: SocketAddr,
+    /// The database file.
+    pub database: PathBuf,
+    /// Longest time that an HTTP request may take, s.
+    pub request_timeout_secs: f64,
+    /// Longest time that the machine may take to come to rest at shutdown, s.
+    pub rest_timeout_secs: f64,
+}
+
+/// The control loop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Control {
+    /// Rate, Hz.
+    pub rate_hz: f64,
+    /// Published snapshots a second, Hz.
+    pub publish_hz: f64,
+    /// Requests that may wait for the loop.
+    pub request_queue: usize,
+    /// Ask for real-time scheduling and locked memory.
+    pub real_time: bool,
+    /// SCHED_FIFO priority.
+    pub priority: u8,
+}
+
+/// The machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Machine {
+    /// Which machine.
+    pub kind: MachineKind,
+    /// Travel limits `[min_x, min_y, max_x, max_y]`, m.
+    pub travel_m: [f64; 4],
+    /// The long rail.
+    pub x: AxisLimits,
+    /// The cross rail.
+    pub y: AxisLimits,
+}
+
+/// Which machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MachineKind {
+    /// The simulated machine.
+    Simulated,
+}
+
+/// What is known of people.
+#[derive(Debug, Clone, PartialEq)]
+pub struct People {
+    /// The intention rule.
+    pub intention_rule: RuleName,
+    /// v_h of the separation rule, m/s.
+    pub v_h_mps: f64,
+}
+
+/// VR clients.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clients {
+    /// Most at once.
+    pub most: usize,
+    /// Most persons of one client.
+    pub persons_each: usize,
+    /// Longest time from connection to hello, s.
+    pub hello_timeout_secs: f64,
+    /// Silence after which a client counts as gone, s.
+    pub silence_timeout_secs: f64,
+    /// Where the room has the origin of the headsets' tracking space, m.
+    pub tracking_origin_m: [f64; 3],
+    /// How the tracking space is turned against the room, counter-clockwise about +z, rad.
+    pub tracking_yaw_rad: f64,
+}
+
+/// Dashboards.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dashboards {
+    /// Most at once.
+    pub most: usize,
+    /// Events that may wait for one dashboard before it is disconnected.
+    pub event_queue: usize,
+}
+
+/// Logs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Log {
+    /// Text for people, JSON for machines.
+    pub format: LogFormat,
+    /// `error`, `warn`, `info`, `debug`, `trace`, or directives such as `info,covr_server=debug`.
+    pub level: String,
+}
+
+/// How a log line looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum LogFormat {
+    /// For people.
+    Text,
+    /// For machines.
+    Json,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            server: Server {
+                bind: SocketAddr::from(([127, 0, 0, 1], 7878)),
+                database: PathBuf::from("covr.sqlite"),
+                request_timeout_secs: 10.0,
+                rest_timeout_secs: 3.0,
+            },
+            control: Control {
+                rate_hz: 250.0,
+                publish_hz: 30.0,
+                request_queue: 64,
+                real_time: true,
+                priority: 60,
+            },
+            machine: Machine {
+                kind: MachineKind::Simulated,
+                travel_m: [0.0, 0.0, 4.0, 4.0],
+                x: AxisLimits::PAPER,
+                y: AxisLimits::PAPER,
+            },
+            people: People { intention_rule: RuleName::Paper, v_h_mps: 1.6 },
+            clients: Clients {
+                most: 8,
+                persons_each: 2,
+                hello_timeout_secs: 5.0,
+                silence_timeout_secs: 10.0,
+                tracking_origin_m: [0.0; 3],
+                tracking_yaw_rad: 0.0,
+            },
+            dashboards: Dashboards { most: 32, event_queue: 1_024 },
+            log: Log { format: LogFormat::Text, level: "info".into() },
+        }
+    }
+}
+
+impl Machine {
+    /// The limits of both axes.
+    pub fn limits(&self) -> Limits {
+        Limits { x: self.x, y: self.y }
+    }
+
+    /// Where the column's centre can stand.
+    pub fn travel(&self) -> Travel {
+        let [min_x, min_y, max_x, max_y] = self.travel_m;
+        Travel { min: Floor::new(min_x, min_y), max: Floor::new(max_x, max_y) }
+    }
+}
+
+impl MachineKind {
+    /// The name on every surface.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Simulated => "simulated",
+        }
+    }
+}

@@ -1,0 +1,317 @@
+//! Every key: its name, its meaning, what it accepts and the place that it fills. The reference text, the
+//! example file and the errors all come from this one table.
+
+use std::net::SocketAddr;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+use covr_engine::intention::RuleName;
+use toml::Value;
+
+use super::{Config, LogFormat, MachineKind};
+
+/// One key.
+#[derive(Clone)]
+pub struct Key {
+    /// `section.key`.
+    pub name: &'static str,
+    /// What it means, with units.
+    pub meaning: &'static str,
+    /// What it accepts, for people.
+    pub accepts: String,
+    place: Place,
+}
+
+/// Where a key's value goes, and what it must be.
+#[derive(Clone)]
+enum Place {
+    Number(RangeInclusive<f64>, fn(&mut Config) -> &mut f64),
+    Whole(RangeInclusive<usize>, fn(&mut Config) -> &mut usize),
+    Priority(fn(&mut Config) -> &mut u8),
+    Switch(fn(&mut Config) -> &mut bool),
+    Text(fn(&mut Config) -> &mut String),
+    Path(fn(&mut Config) -> &mut PathBuf),
+    Address(fn(&mut Config) -> &mut SocketAddr),
+    Rectangle(fn(&mut Config) -> &mut [f64; 4]),
+    Point(fn(&mut Config) -> &mut [f64; 3]),
+    Rule(fn(&mut Config) -> &mut RuleName),
+    Machine(fn(&mut Config) -> &mut MachineKind),
+    LogFormat(fn(&mut Config) -> &mut LogFormat),
+}
+
+/// Every key, section by section.
+pub fn all() -> Vec<Key> {
+    vec![
+        Key::new(
+            "server.bind",
+            "Where the server listens. Another address than this machine's own needs --insecure-lan.",
+            Place::Address(|c| &mut c.server.bind),
+        ),
+        Key::new(
+            "server.database",
+            "The SQLite file of scenes, sessions, events and prior changes; made when missing.",
+            Place::Path(|c| &mut c.server.database),
+        ),
+        Key::new(
+            "server.request_timeout_secs",
+            "Longest time that an HTTP request may take, s.",
+            Place::Number(1.0..=120.0, |c| &mut c.server.request_timeout_secs),
+        ),
+        Key::new(
+            "server.rest_timeout_secs",
+            "Longest time that the machine may take to come to rest at shutdown, s.",
+            Place::Number(0.5..=30.0, |c| &mut c.server.rest_timeout_secs),
+        ),
+        Key::new(
+            "control.rate_hz",
+            "Rate of the control loop, Hz.",
+            Place::Number(50.0..=1_000.0, |c| &mut c.control.rate_hz),
+        ),
+        Key::new(
+            "control.publish_hz",
+            "Snapshots published to dashboards and clients, Hz.",
+            Place::Number(1.0..=120.0, |c| &mut c.control.publish_hz),
+        ),
+        Key::new(
+            "control.request_queue",
+            "Requests that may wait for the control loop before the next is refused as busy. Stop has lanes of its own.",
+            Place::Whole(1..=4_096, |c| &mut c.control.request_queue),
+        ),
+        Key::new(
+            "control.real_time",
+            "Ask for SCHED_FIFO and locked memory; the server says when it does not get them.",
+            Place::Switch(|c| &mut c.control.real_time),
+        ),
+        Key::new("control.priority", "SCHED_FIFO priority.", Place::Priority(|c| &mut c.control.priority)),
+        Key::new("machine.kind", "The machine that is driven.", Place::Machine(|c| &mut c.machine.kind)),
+        Key::new(
+            "machine.travel_m",
+            "Travel limits of the column's centre [min_x, min_y, max_x, max_y], m, room frame.",
+            Place::Rectangle(|c| &mut c.machine.travel_m),
+        ),
+        Key::new(
+            "machine.x.speed_mps",
+            "Greatest speed along the long rail, m/s.",
+            speed(|c| &mut c.machine.x.speed_mps),
+        ),
+        Key::new(
+            "machine.x.acceleration_mps2",
+            "Greatest acceleration along the long rail, m/s2.",
+            acceleration(|c| &mut c.machine.x.acceleration_mps2),
+        ),
+        Key::new(
+            "machine.x.braking_mps2",
+            "Greatest deceleration along the long rail, as the brake test showed it, m/s2.",
+            acceleration(|c| &mut c.machine.x.braking_mps2),
+        ),
+        Key::new(
+            "machine.x.jerk_mps3",
+            "Greatest jerk along the long rail, m/s3.",
+            jerk(|c| &mut c.machine.x.jerk_mps3),
+        ),
+        Key::new(
+            "machine.y.speed_mps",
+            "Greatest speed along the cross rail, m/s.",
+            speed(|c| &mut c.machine.y.speed_mps),
+        ),
+        Key::new(
+            "machine.y.acceleration_mps2",
+            "Greatest acceleration along the cross rail, m/s2.",
+            acceleration(|c| &mut c.machine.y.acceleration_mps2),
+        ),
+        Key::new(
+            "machine.y.braking_mps2",
+            "Greatest deceleration along the cross rail, as the brake test showed it, m/s2.",
+            acceleration(|c| &mut c.machine.y.braking_mps2),
+        ),
+        Key::new(
+            "machine.y.jerk_mps3",
+            "Greatest jerk along the cross rail, m/s3.",
+            jerk(|c| &mut c.machine.y.jerk_mps3),
+        ),
+        Key::new(
+            "people.intention_rule",
+            "The intention rule, by name.",
+            Place::Rule(|c| &mut c.people.intention_rule),
+        ),
+        Key::new(
+            "people.v_h_mps",
+            "v_h of the separation rule: how fast a person is assumed to come nearer, m/s (ISO 13855: 1.6).",
+            Place::Number(1.6..=3.0, |c| &mut c.people.v_h_mps),
+        ),
+        Key::new("clients.most", "VR clients at once.", Place::Whole(1..=64, |c| &mut c.clients.most)),
+        Key::new(
+            "clients.persons_each",
+            "Persons that one VR client may speak for; its message rate grows with them.",
+            Place::Whole(1..=16, |c| &mut c.clients.persons_each),
+        ),
+        Key::new(
+            "clients.hello_timeout_secs",
+            "Longest time from connection to hello, s.",
+            Place::Number(0.1..=60.0, |c| &mut c.clients.hello_timeout_secs),
+        ),
+        Key::new(
+            "clients.silence_timeout_secs",
+            "Silence after which a VR client counts as gone, s.",
+            Place::Number(0.5..=120.0, |c| &mut c.clients.silence_timeout_secs),
+        ),
+        Key::new(
+            "clients.tracking_origin_m",
+            "Where the room has the origin of the headsets' tracking space [x, y, z], m.",
+            Place::Point(|c| &mut c.clients.tracking_origin_m),
+        ),
+        Key::new(
+            "clients.tracking_yaw_rad",
+            "How the tracking space is turned against the room, counter-clockwise about +z, rad.",
+            Place::Number(-3.2..=3.2, |c| &mut c.clients.tracking_yaw_rad),
+        ),
+        Key::new(
+            "dashboards.most",
+            "Dashboards at once.",
+            Place::Whole(1..=1_000, |c| &mut c.dashboards.most),
+        ),
+        Key::new(
+            "dashboards.event_queue",
+            "Events that may wait for a slow dashboard before it is disconnected to start afresh.",
+            Place::Whole(16..=65_536, |c| &mut c.dashboards.event_queue),
+        ),
+        Key::new(
+            "log.format",
+            "Log lines as text for people or as JSON.",
+            Place::LogFormat(|c| &mut c.log.format),
+        ),
+        Key::new(
+            "log.level",
+            "error, warn, info, debug, trace, or directives such as \"info,covr_server=debug\".",
+            Place::Text(|c| &mut c.log.level),
+        ),
+    ]
+}
+
+impl Key {
+    fn new(name: &'static str, meaning: &'static str, place: Place) -> Self {
+        let accepts = match &place {
+            Place::Number(range, _) => format!("a number from {} to {}", range.start(), range.end()),
+            Place::Whole(range, _) => format!("a whole number from {} to {}", range.start(), range.end()),
+            Place::Priority(_) => "a whole number from 1 to 99".into(),
+            Place::Switch(_) => "true or false".into(),
+            Place::Text(_) => "a text that is not empty".into(),
+            Place::Path(_) => "a path that is not empty".into(),
+            Place::Address(_) => "an address and a port such as \"127.0.0.1:7878\"".into(),
+            Place::Rectangle(_) => {
+                "four numbers [min_x, min_y, max_x, max_y], each side at least 0.5 m".into()
+            }
+            Place::Point(_) => "three numbers [x, y, z] of at most 100 m".into(),
+            Place::Rule(_) => {
+                let names = RuleName::ALL.map(|rule| format!("\"{}\"", rule.name()));
+                format!("one of {}", names.join(", "))
+            }
+            Place::Machine(_) => "\"simulated\"".into(),
+            Place::LogFormat(_) => "\"text\" or \"json\"".into(),
+        };
+        Self { name, meaning, accepts, place }
+    }
+
+    /// Put a value in its place; false when it is not what the key accepts.
+    pub fn set(&self, config: &mut Config, value: &Value) -> bool {
+        self.try_set(config, value).is_some()
+    }
+
+    /// The value in force.
+    pub fn value(&self, config: &Config) -> Value {
+        let mut config = config.clone();
+        match &self.place {
+            Place::Number(_, place) => Value::Float(*place(&mut config)),
+            Place::Whole(_, place) => Value::Integer(*place(&mut config) as i64),
+            Place::Priority(place) => Value::Integer(i64::from(*place(&mut config))),
+            Place::Switch(place) => Value::Boolean(*place(&mut config)),
+            Place::Text(place) => Value::String(place(&mut config).clone()),
+            Place::Path(place) => Value::String(place(&mut config).display().to_string()),
+            Place::Address(place) => Value::String(place(&mut config).to_string()),
+            Place::Rectangle(place) => {
+                Value::Array(place(&mut config).iter().map(|v| Value::Float(*v)).collect())
+            }
+            Place::Point(place) => {
+                Value::Array(place(&mut config).iter().map(|v| Value::Float(*v)).collect())
+            }
+            Place::Rule(place) => Value::String(place(&mut config).name().into()),
+            Place::Machine(place) => Value::String(place(&mut config).name().into()),
+            Place::LogFormat(place) => Value::String(
+                match place(&mut config) {
+                    LogFormat::Text => "text",
+                    LogFormat::Json => "json",
+                }
+                .into(),
+            ),
+        }
+    }
+
+    fn try_set(&self, config: &mut Config, value: &Value) -> Option<()> {
+        match &self.place {
+            Place::Number(range, place) => {
+                *place(config) = number(value).filter(|v| range.contains(v))?;
+            }
+            Place::Whole(range, place) => {
+                *place(config) = usize::try_from(value.as_integer()?).ok().filter(|v| range.contains(v))?;
+            }
+            Place::Priority(place) => {
+                *place(config) = u8::try_from(value.as_integer()?).ok().filter(|v| (1..=99).contains(v))?;
+            }
+            Place::Switch(place) => *place(config) = value.as_bool()?,
+            Place::Text(place) => *place(config) = text(value)?.into(),
+            Place::Path(place) => *place(config) = text(value)?.into(),
+            Place::Address(place) => *place(config) = value.as_str()?.parse().ok()?,
+            Place::Rectangle(place) => {
+                let corners = lengths::<4>(value)?;
+                let [min_x, min_y, max_x, max_y] = corners;
+                if max_x - min_x < 0.5 || max_y - min_y < 0.5 {
+                    return None;
+                }
+                *place(config) = corners;
+            }
+            Place::Point(place) => *place(config) = lengths::<3>(value)?,
+            Place::Rule(place) => *place(config) = RuleName::parse(value.as_str()?)?,
+            Place::Machine(place) => {
+                *place(config) = match value.as_str()? {
+                    "simulated" => MachineKind::Simulated,
+                    _ => return None,
+                }
+            }
+            Place::LogFormat(place) => {
+                *place(config) = match value.as_str()? {
+                    "text" => LogFormat::Text,
+                    "json" => LogFormat::Json,
+                    _ => return None,
+                }
+            }
+        }
+        Some(())
+    }
+}
+
+fn speed(place: fn(&mut Config) -> &mut f64) -> Place {
+    Place::Number(0.05..=3.0, place)
+}
+
+fn acceleration(place: fn(&mut Config) -> &mut f64) -> Place {
+    Place::Number(0.1..=20.0, place)
+}
+
+fn jerk(place: fn(&mut Config) -> &mut f64) -> Place {
+    Place::Number(1.0..=1_000.0, place)
+}
+
+/// So many lengths of at most 100 m.
+fn lengths<const N: usize>(value: &Value) -> Option<[f64; N]> {
+    let lengths: Vec<f64> = value.as_array()?.iter().map(number).collect::<Option<_>>()?;
+    let lengths: [f64; N] = lengths.try_into().ok()?;
+    lengths.iter().all(|length| length.abs() <= 100.0).then_some(lengths)
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|v| v as f64)).filter(|v| v.is_finite())
+}
+
+fn text(value: &Value) -> Option<&str> {
+    value.as_str().filter(|v| !v.trim().is_empty())
+}

@@ -1,0 +1,224 @@
+//! Reading the file and the environment into a [`Config`].
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use toml::Value;
+
+use super::keys::{Key, all};
+use super::{Config, LogFormat};
+
+/// Why a configuration was refused.
+#[derive(Debug, thiserror::Error)]
+pub enum ConfigError {
+    /// The file cannot be read.
+    #[error("cannot read {}: {source}", .path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// It is not TOML.
+    #[error("{origin} is not TOML: {message}")]
+    NotToml {
+        /// File or variable.
+        origin: String,
+        /// With line and column.
+        message: String,
+    },
+    /// No such key.
+    #[error("{origin}: unknown key `{key}`{}", .nearest.map(|k| format!("; did you mean `{k}`?")).unwrap_or_default())]
+    UnknownKey {
+        /// File or variable.
+        origin: String,
+        /// The key.
+        key: String,
+        /// The most similar known key.
+        nearest: Option<&'static str>,
+    },
+    /// Not what the key accepts.
+    #[error("{origin}: `{key}`: found {found}, expected {expected}")]
+    BadValue {
+        /// File or variable.
+        origin: String,
+        /// The key.
+        key: &'static str,
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: String,
+    },
+}
+
+/// The configuration of a file (or the defaults without one), with the environment's overrides.
+pub fn load(
+    file: Option<&Path>,
+    environment: impl IntoIterator<Item = (String, String)>,
+) -> Result<Config, ConfigError> {
+    let mut config = match file {
+        None => Config::default(),
+        Some(path) => {
+            let text = std::fs::read_to_string(path)
+                .map_err(|source| ConfigError::Unreadable { path: path.into(), source })?;
+            load_text(&text, &path.display().to_string())?
+        }
+    };
+    for (name, found) in environment {
+        let Some(key) = name.strip_prefix("COVR_").filter(|rest| rest.contains("__")) else { continue };
+        let key = key.replace("__", ".").to_lowercase();
+        let value = toml::from_str::<toml::Table>(&format!("v = {found}"))
+            .ok()
+            .and_then(|mut table| table.remove("v"))
+            .unwrap_or(Value::String(found));
+        set(&mut config, &key, &value, &format!("environment variable {name}"))?;
+    }
+    Ok(config)
+}
+
+/// The configuration of a TOML text.
+pub fn load_text(text: &str, origin: &str) -> Result<Config, ConfigError> {
+    let table: toml::Table = toml::from_str(text)
+        .map_err(|error| ConfigError::NotToml { origin: origin.into(), message: error.to_string() })?;
+    let mut config = Config::default();
+    let mut found = Vec::new();
+    let whole = Value::Table(table);
+    flatten("", &whole, &mut found);
+    for (key, value) in found {
+        set(&mut config, &key, value, origin)?;
+    }
+    Ok(config)
+}
+
+/// A TOML text with every key, its meaning and the value of `config`.
+pub fn reference(config: &Config) -> String {
+    let mut text = String::from(
+        "# Every key of the CoVR server with its default. COVR_SECTION__KEY in the environment overrides a key:\n\
+         # COVR_SERVER__BIND=127.0.0.1:9000\n",
+    );
+    let mut section = "";
+    for key in all() {
+        let (in_section, name) = key.name.rsplit_once('.').unwrap_or(("", key.name));
+        if in_section != section {
+            section = in_section;
+            let _ = write!(text, "\n[{section}]\n");
+        }
+        let _ = writeln!(text, "# {}", key.meaning);
+        let _ = writeln!(text, "# Accepts {}.", key.accepts);
+        let _ = writeln!(text, "{name} = {}", key.value(config));
+    }
+    text
+}
+
+impl std::str::FromStr for LogFormat {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        clap::ValueEnum::from_str(text, false)
+    }
+}
+
+fn set(config: &mut Config, name: &str, value: &Value, origin: &str) -> Result<(), ConfigError> {
+    let keys = all();
+    let Some(key) = keys.iter().find(|key| key.name == name) else {
+        return Err(ConfigError::UnknownKey {
+            origin: origin.into(),
+            key: name.into(),
+            nearest: nearest(&keys, name),
+        });
+    };
+    if key.set(config, value) {
+        return Ok(());
+    }
+    Err(ConfigError::BadValue {
+        origin: origin.into(),
+        key: key.name,
+        found: value.to_string(),
+        expected: key.accepts.clone(),
+    })
+}
+
+/// Tables whose path no key continues are reported as they stand, so that an unknown section is named whole.
+fn flatten<'a>(path: &str, value: &'a Value, found: &mut Vec<(String, &'a Value)>) {
+    match value {
+        Value::Table(table) => {
+            for (name, value) in table {
+                let inner = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                flatten(&inner, value, found);
+            }
+        }
+        _ => found.push((path.into(), value)),
+    }
+}
+
+fn nearest(keys: &[Key], name: &str) -> Option<&'static str> {
+    let near = |key: &Key| strsim::jaro_winkler(key.name, name);
+    keys.iter().max_by(|a, b| near(a).total_cmp(&near(b))).filter(|key| near(key) > 0.8).map(|key| key.name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn environment(name: &str, value: &str) -> Vec<(String, String)> {
+        vec![(name.into(), value.into())]
+    }
+
+    #[test]
+    fn the_reference_reads_back_as_the_defaults() {
+        let text = reference(&Config::default());
+        assert_eq!(load_text(&text, "reference").unwrap(), Config::default());
+    }
+
+    #[test]
+    fn the_example_file_is_the_reference() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../deploy/covr.example.toml");
+        let example = std::fs::read_to_string(path).unwrap();
+        assert_eq!(
+            example,
+            reference(&Config::default()),
+            "write it anew with: covr config > deploy/covr.example.toml"
+        );
+    }
+
+    #[test]
+    fn every_key_gives_back_what_it_was_set_to() {
+        let defaults = Config::default();
+        for key in all() {
+            let mut config = defaults.clone();
+            assert!(key.set(&mut config, &key.value(&defaults)), "{} refuses its own default", key.name);
+            assert_eq!(config, defaults, "{}", key.name);
+            assert!(!key.set(&mut config, &Value::Array(vec![])), "{} takes an empty list", key.name);
+        }
+    }
+
+    #[test]
+    fn an_unknown_key_is_named_with_the_nearest_known_one() {
+        let error = load_text("[control]\nrate_herz = 250", "f.toml").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "f.toml: unknown key `control.rate_herz`; did you mean `control.rate_hz`?"
+        );
+        let error = load_text("[wombat]\nzzz = 1", "f.toml").unwrap_err();
+        assert!(error.to_string().starts_with("f.toml: unknown key `wombat.zzz`"), "{error}");
+    }
+
+    #[test]
+    fn a_bad_value_names_key_found_and_expected() {
+        let error = load_text("[people]\nv_h_mps = 0.2", "f.toml").unwrap_err();
+        assert_eq!(error.to_string(), "f.toml: `people.v_h_mps`: found 0.2, expected a number from 1.6 to 3");
+        let error = load_text("[server]\nbind = 7878", "f.toml").unwrap_err();
+        assert!(error.to_string().contains("`server.bind`: found 7878, expected an address"), "{error}");
+    }
+
+    #[test]
+    fn the_environment_overrides_and_is_checked_as_well() {
+        let config = load(None, environment("COVR_SERVER__BIND", "127.0.0.1:9000")).unwrap();
+        assert_eq!(config.server.bind.port(), 9000);
+        let config = load(None, environment("COVR_MACHINE__X__SPEED_MPS", "0.5")).unwrap();
+        assert!((config.machine.x.speed_mps - 0.5).abs() < 1e-12);
+        let error = load(None, environment("COVR_SERVER__BINT", "x")).unwrap_err();
+        assert!(error.to_string().contains("did you mean `server.bind`"), "{error}");
+        assert_eq!(load(None, environment("COVR_SKIP_WEB", "1")).unwrap(), Config::default());
+    }
+}

@@ -1,0 +1,254 @@
+//! The thread itself: read, update, write.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::sync_channel;
+use std::time::{Duration, Instant};
+
+use covr_engine::event::EventKind;
+use covr_engine::mode::RequestKind;
+use covr_engine::observation::Observation;
+use covr_engine::safety::vetted::{Action, Vetted};
+use covr_engine::time::Time;
+use covr_engine::{Engine, Request};
+use covr_gantry::contract::{Gantry, NotTaken};
+use covr_wire::dashboard::ControlLoop;
+use tokio::sync::mpsc::Sender;
+use tokio::sync::watch;
+
+use super::inbox::Inbox;
+use super::lateness::Lateness;
+use super::stop_lane::{StopLane, StopLaneName};
+use super::{Control, Ended, EngineEvent, Published, Setup, real_time};
+use crate::clock::Clock;
+use crate::recorder::Record;
+
+/// Start the thread; see [`Control::start`].
+pub fn start(setup: Setup) -> std::io::Result<Control> {
+    let (asks, asks_out) = sync_channel(setup.request_queue);
+    let (facts, facts_out) = sync_channel(FACT_QUEUE);
+    let stops = Arc::new(StopLaneName::ALL.map(|_| StopLane::default()));
+    let quit = Arc::new(AtomicBool::new(false));
+    let events_dropped = Arc::new(AtomicU64::new(0));
+    let ended = watch::Sender::new(None);
+    let ended_out = ended.subscribe();
+
+    let rate_hz = 1.0 / setup.period.as_secs_f64();
+    let mut drive =
+        Drive { gantry: setup.gantry, clock: setup.clock, last: Action::Release, refusing: false };
+    let mut engine = setup.engine;
+    let now = setup.clock.now();
+    drive.read(&mut engine, now);
+    let control_loop = ControlLoop {
+        rate_hz,
+        steps: 0,
+        missed_deadlines: 0,
+        lateness_p99_micros: 0.0,
+        lateness_max_micros: 0.0,
+        scheduling: "not started".into(),
+    };
+    let first = Published {
+        generation: 0,
+        snapshot: engine.snapshot(now),
+        scene: engine.scene().clone(),
+        control_loop: control_loop.clone(),
+    };
+    let published = watch::Sender::new(Arc::new(first));
+    let published_out = published.subscribe();
+
+    let mut run = Run {
+        engine,
+        drive,
+        clock: setup.clock,
+        period: setup.period,
+        publish_every: setup.publish_every,
+        inbox: Inbox::new(asks_out, facts_out),
+        stops: stops.clone(),
+        stops_seen: [0; 4],
+        quit: quit.clone(),
+        events: setup.events,
+        events_dropped: events_dropped.clone(),
+        published,
+        next_publish: Instant::now(),
+        lateness: Lateness::over_ten_seconds(rate_hz),
+        control_loop,
+    };
+    let priority = setup.real_time_priority;
+    std::thread::Builder::new().name("control".into()).spawn(move || {
+        run.control_loop.scheduling = real_time::ask(priority);
+        tracing::info!(scheduling = %run.control_loop.scheduling, rate_hz, "control loop runs");
+        let end = match catch_unwind(AssertUnwindSafe(|| run.until_quit())) {
+            Ok(()) => Ended::AsAsked,
+            Err(panic) => Ended::Panicked(words_of(&*panic)),
+        };
+        // The machine is told to stop before anybody learns of the end.
+        drop(run);
+        ended.send_replace(Some(end));
+    })?;
+    Ok(Control { asks, facts, stops, quit, events_dropped, published: published_out, ended: ended_out })
+}
+
+/// Everything that the thread owns.
+struct Run {
+    engine: Engine,
+    drive: Drive,
+    clock: Clock,
+    period: Duration,
+    publish_every: Duration,
+    inbox: Inbox,
+    stops: Arc<[StopLane; 4]>,
+    stops_seen: [u64; 4],
+    quit: Arc<AtomicBool>,
+    events: Sender<Record>,
+    events_dropped: Arc<AtomicU64>,
+    published: watch::Sender<Arc<Published>>,
+    next_publish: Instant,
+    lateness: Lateness,
+    control_loop: ControlLoop,
+}
+
+/// The machine, which is told to stop when this is dropped, whatever the reason.
+struct Drive {
+    gantry: Box<dyn Gantry>,
+    clock: Clock,
+    last: Action,
+    refusing: bool,
+}
+
+impl Run {
+    fn until_quit(&mut self) {
+        let mut deadline = Instant::now() + self.period;
+        while !self.quit.load(Ordering::Acquire) {
+            std::thread::sleep(deadline.saturating_duration_since(Instant::now()));
+            let late = Instant::now().saturating_duration_since(deadline);
+            self.count(late);
+            self.tick();
+            deadline += self.period;
+            // After a stall the missed periods are skipped, never run after one another.
+            if late > self.period {
+                deadline += self.period * (late.as_nanos() / self.period.as_nanos()) as u32;
+            }
+        }
+    }
+
+    fn count(&mut self, late: Duration) {
+        self.lateness.add(late.as_micros() as i64);
+        let now = self.clock.now();
+        if late > self.period {
+            self.control_loop.missed_deadlines += 1;
+            self.engine.observe(now, Observation::DeadlineMissed);
+        } else {
+            self.engine.observe(now, Observation::DeadlineMet);
+        }
+    }
+
+    fn tick(&mut self) {
+        let now = self.clock.now();
+        self.drive.read(&mut self.engine, now);
+        self.inbox.tell(&mut self.engine, now);
+        let mut answers = Vec::new();
+        self.inbox.ask(&mut self.engine, now, &mut answers);
+        // Stops come last, so that no request of the same tick undoes one.
+        let pressed = self.take_stops(now);
+        let command = self.engine.step(now);
+        self.drive.write(&command, now);
+        let written = Instant::now();
+        self.control_loop.steps += 1;
+
+        let scene = self.engine.scene().clone();
+        let mut mode_changed = false;
+        for event in self.engine.drain_events() {
+            mode_changed |= matches!(event.kind, EventKind::ModeChanged { .. });
+            if self.events.try_send(Record::Engine(EngineEvent { event, scene: scene.clone() })).is_err() {
+                self.events_dropped.fetch_add(1, Ordering::Relaxed);
+            }
+        }
+        if written >= self.next_publish || mode_changed || pressed.is_some() || !answers.is_empty() {
+            self.publish(written);
+        }
+        for (reply, answer) in answers {
+            // Whoever asked may have gone; the answer is then nobody's.
+            let _ = reply.send(answer);
+        }
+        if let Some(presses) = pressed {
+            for (lane, presses) in self.stops.iter().zip(presses) {
+                lane.acknowledge(presses, written);
+            }
+        }
+    }
+
+    /// Put every new press to the engine; the presses of each lane so far, if any is new.
+    fn take_stops(&mut self, now: Time) -> Option<[u64; 4]> {
+        let mut presses = self.stops_seen;
+        for (lane, count) in self.stops.iter().zip(&mut presses) {
+            let so_far = lane.presses();
+            if so_far != *count {
+                *count = so_far;
+                self.engine.request(now, Request::Machine(RequestKind::Stop, Some(lane.reason())));
+            }
+        }
+        let pressed = presses != self.stops_seen;
+        self.stops_seen = presses;
+        pressed.then_some(presses)
+    }
+
+    fn publish(&mut self, at: Instant) {
+        self.next_publish = at + self.publish_every;
+        let (p99, max) = self.lateness.p99_and_max_micros();
+        self.control_loop.lateness_p99_micros = p99;
+        self.control_loop.lateness_max_micros = max;
+        let generation = self.published.borrow().generation + 1;
+        self.published.send_replace(Arc::new(Published {
+            generation,
+            snapshot: self.engine.snapshot(self.clock.time_of(at)),
+            scene: self.engine.scene().clone(),
+            control_loop: self.control_loop.clone(),
+        }));
+    }
+}
+
+impl Drive {
+    fn read(&mut self, engine: &mut Engine, now: Time) {
+        let reading = self.gantry.read(now);
+        engine.observe(now, Observation::Machine(reading.report));
+    }
+
+    /// A refused command is R8's to act on; here it is said once until one is taken again.
+    fn write(&mut self, command: &Vetted, now: Time) {
+        self.last = command.action();
+        match self.gantry.write(now, command) {
+            Ok(()) => self.refusing = false,
+            Err(why) if !self.refusing => {
+                self.refusing = true;
+                self.say_refused(&why);
+            }
+            Err(_) => {}
+        }
+    }
+
+    fn say_refused(&self, why: &NotTaken) {
+        tracing::warn!(machine = self.gantry.name(), %why, "the machine did not take a command");
+    }
+}
+
+impl Drop for Drive {
+    fn drop(&mut self) {
+        let now = self.clock.now();
+        let last_word = if self.last == Action::Release { Vetted::release(now) } else { Vetted::hold(now) };
+        if let Err(why) = self.gantry.write(now, &last_word) {
+            tracing::error!(%why, "the machine did not take the last command; its own timeout stops it");
+        }
+    }
+}
+
+fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
+    panic
+        .downcast_ref::<&str>()
+        .map(|words| (*words).to_owned())
+        .or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "a panic without words".into())
+}
+
+/// Facts come with each person's coming and going, never with poses.
+const FACT_QUEUE: usize = 1_024;

@@ -1,0 +1,71 @@
+//! HTTP: handlers check, convert and pass on. Every error under /api is a problem document.
+
+mod guard;
+mod health;
+mod input;
+mod machine;
+mod openapi;
+mod problem;
+mod records;
+mod scenes;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::Router;
+use axum::extract::DefaultBodyLimit;
+use axum::http::StatusCode;
+use axum::middleware::{from_fn, from_fn_with_state};
+use axum::response::IntoResponse;
+use axum::routing::get;
+use covr_wire::scene::MAX_SCENE_BYTES;
+use tower::ServiceBuilder;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::request_id::{MakeRequestUuid, PropagateRequestIdLayer, SetRequestIdLayer};
+use tower_http::timeout::TimeoutLayer;
+use tower_http::trace::TraceLayer;
+
+pub use health::Readiness;
+pub use machine::{Answered, StopAcknowledged};
+pub use problem::{PROBLEM_JSON, Problem, ProblemItem};
+pub use records::PriorsChanged;
+pub use scenes::{SceneActivated, SceneChecked, SceneStored};
+
+use crate::app::App;
+use crate::{web, ws};
+
+/// Everything that the server answers.
+pub fn router(app: Arc<App>) -> Router {
+    let (api, document) = openapi::split(
+        openapi::base()
+            .nest("/api/v1", machine::routes().merge(scenes::routes()).merge(records::routes()))
+            .merge(health::routes()),
+    );
+    let time_out = Duration::from_secs_f64(app.config.server.request_timeout_secs);
+    let layers = ServiceBuilder::new()
+        .layer(SetRequestIdLayer::x_request_id(MakeRequestUuid))
+        .layer(TraceLayer::new_for_http().make_span_with(request_span))
+        .layer(PropagateRequestIdLayer::x_request_id())
+        .layer(from_fn(problem::finish))
+        .layer(from_fn_with_state(app.clone(), guard::same_host))
+        .layer(CatchPanicLayer::new())
+        .layer(TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, time_out))
+        .layer(DefaultBodyLimit::max(MAX_SCENE_BYTES));
+    api.route("/api/v1/openapi.json", get(move || std::future::ready(document.clone().into_response())))
+        .route("/api/{*rest}", get(nothing_here).fallback(nothing_here))
+        .route("/ws/v1/client", get(ws::client::upgrade))
+        .route("/ws/v1/dashboard", get(ws::dashboard::upgrade))
+        .fallback(web::page)
+        .method_not_allowed_fallback(async || StatusCode::METHOD_NOT_ALLOWED)
+        .with_state(app)
+        .layer(layers)
+}
+
+async fn nothing_here() -> StatusCode {
+    StatusCode::NOT_FOUND
+}
+
+fn request_span(request: &axum::extract::Request) -> tracing::Span {
+    let id = request.headers().get("x-request-id").and_then(|id| id.to_str().ok()).unwrap_or_default();
+    tracing::debug_span!("http", method = %request.method(), path = request.uri().path(), id)
+}

@@ -1,0 +1,151 @@
+//! The machine: its state, what may be asked of it, and the stop.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use axum::Json;
+use axum::body::{Bytes, to_bytes};
+use axum::extract::{Path, Request, State};
+use axum::http::HeaderValue;
+use axum::http::header::CACHE_CONTROL;
+use axum::response::{IntoResponse, Response};
+use covr_engine::mode::RequestKind;
+use covr_engine::observation::PersonId;
+use covr_engine::{Answer, Outcome};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::input::{Author, ReasonBody, invalid_item};
+use super::problem::Problem;
+use crate::app::{App, Asker};
+use crate::control::StopLaneName;
+
+/// What came of a request.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Answered {
+    /// `accepted` or `already_so`; a refusal is a problem.
+    pub outcome: String,
+    /// What it did, in plain words.
+    pub detail: String,
+}
+
+/// The stop reached the drive.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct StopAcknowledged {
+    /// Always true: without an acknowledgement there is a problem instead.
+    pub acknowledged: bool,
+    /// From reception to the braking command written to the drive, microseconds.
+    pub to_drive_micros: u64,
+}
+
+/// The routes.
+pub fn routes() -> OpenApiRouter<Arc<App>> {
+    OpenApiRouter::new()
+        .routes(routes!(state))
+        .routes(routes!(home))
+        .routes(routes!(arm))
+        .routes(routes!(disarm))
+        .routes(routes!(reset))
+        .routes(routes!(stop))
+        .routes(routes!(confirm))
+}
+
+/// The whole state now.
+#[utoipa::path(get, path = "/state", tag = "machine",
+    responses((status = 200, description = "The snapshot", body = ref("#/components/schemas/Snapshot"))))]
+async fn state(State(app): State<Arc<App>>) -> Response {
+    let snapshot = crate::live::wire_snapshot(&app, &app.control.published());
+    ([(CACHE_CONTROL, HeaderValue::from_static("no-store"))], Json(snapshot)).into_response()
+}
+
+/// Find the switches. Whoever asks says that the arena is clear.
+#[utoipa::path(post, path = "/home", tag = "machine", request_body(content = ReasonBody, description = "May be empty"),
+    responses((status = 200, body = Answered), (status = 409, description = "Refused", body = Problem), (status = 503, description = "Busy", body = Problem)))]
+async fn home(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Result<Json<Answered>, Problem> {
+    ask(&app, author, RequestKind::Home, &body).await
+}
+
+/// Follow the visitor.
+#[utoipa::path(post, path = "/arm", tag = "machine", request_body(content = ReasonBody, description = "May be empty"),
+    responses((status = 200, body = Answered), (status = 409, description = "Refused", body = Problem), (status = 503, description = "Busy", body = Problem)))]
+async fn arm(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Result<Json<Answered>, Problem> {
+    ask(&app, author, RequestKind::Arm, &body).await
+}
+
+/// Brake and release the drive.
+#[utoipa::path(post, path = "/disarm", tag = "machine", request_body(content = ReasonBody, description = "May be empty"),
+    responses((status = 200, body = Answered), (status = 409, description = "Refused", body = Problem), (status = 503, description = "Busy", body = Problem)))]
+async fn disarm(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Result<Json<Answered>, Problem> {
+    ask(&app, author, RequestKind::Disarm, &body).await
+}
+
+/// Leave a latched stop or a fault. Starts nothing.
+#[utoipa::path(post, path = "/reset", tag = "machine", request_body(content = ReasonBody, description = "The reason is due"),
+    responses((status = 200, body = Answered), (status = 409, description = "Refused", body = Problem),
+        (status = 422, description = "No reason given", body = Problem), (status = 503, description = "Busy", body = Problem)))]
+async fn reset(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Result<Json<Answered>, Problem> {
+    if ReasonBody::read(&body)?.is_none() {
+        return Err(invalid_item("reason", "nothing", "why the machine may leave its stop, in words"));
+    }
+    ask(&app, author, RequestKind::Reset, &body).await
+}
+
+/// The software stop. No body, header or origin keeps it from stopping: a bad or slow body costs the reason alone.
+#[utoipa::path(post, path = "/stop", tag = "machine", request_body(content = ReasonBody, description = "May be empty"),
+    responses((status = 200, body = StopAcknowledged), (status = 503, description = "The drive did not acknowledge", body = Problem)))]
+async fn stop(
+    State(app): State<Arc<App>>,
+    author: Result<Author, Problem>,
+    request: Request,
+) -> Result<Json<StopAcknowledged>, Problem> {
+    let received_at = Instant::now();
+    let body = tokio::time::timeout(LONGEST_STOP_BODY, to_bytes(request.into_body(), MOST_STOP_BODY)).await;
+    let reason = body.ok().and_then(Result::ok).and_then(|body| ReasonBody::read(&body).ok()).flatten();
+    let author = author.map_or_else(|_| "anonymous".into(), |author| author.0);
+    let asker = Asker { by: "http", author };
+    let to_drive = app
+        .stop(&asker, StopLaneName::Http, reason, received_at)
+        .await
+        .map_err(|why| Problem::unavailable(why.to_string()))?;
+    Ok(Json(StopAcknowledged { acknowledged: true, to_drive_micros: to_drive.as_micros() as u64 }))
+}
+
+/// The person stands on the floor mark again (R15).
+#[utoipa::path(post, path = "/persons/{id}/confirm", tag = "machine", params(("id" = u32, Path, description = "The server's number of the person")),
+    responses((status = 200, body = Answered), (status = 404, description = "Nobody of this number is inside", body = Problem),
+        (status = 409, description = "Refused", body = Problem)))]
+async fn confirm(
+    State(app): State<Arc<App>>,
+    author: Author,
+    Path(id): Path<String>,
+) -> Result<Json<Answered>, Problem> {
+    let person = id
+        .parse()
+        .ok()
+        .map(PersonId)
+        .filter(|person| app.persons.is_inside(*person))
+        .ok_or_else(|| Problem::not_found(format!("person {id} is not in the arena")))?;
+    let asker = Asker { by: "http", author: author.0 };
+    answered(app.confirm_origin(&asker, person).await?)
+}
+
+async fn ask(app: &App, author: Author, kind: RequestKind, body: &[u8]) -> Result<Json<Answered>, Problem> {
+    let reason = ReasonBody::read(body)?;
+    let asker = Asker { by: "http", author: author.0 };
+    answered(app.request(&asker, kind, reason).await?)
+}
+
+fn answered(answer: Answer) -> Result<Json<Answered>, Problem> {
+    let outcome = match answer.outcome {
+        Outcome::Accepted => "accepted",
+        Outcome::AlreadySo => "already_so",
+        Outcome::Refused => return Err(Problem::refused(answer.detail)),
+    };
+    Ok(Json(Answered { outcome: outcome.into(), detail: answer.detail }))
+}
+
+/// A stop does not wait longer for its own reason.
+const LONGEST_STOP_BODY: Duration = Duration::from_millis(20);
+const MOST_STOP_BODY: usize = 64 * 1024;

@@ -1,0 +1,152 @@
+//! Errors as RFC 9457 problem documents, whatever layer they come from.
+
+use axum::Json;
+use axum::body::Body;
+use axum::extract::Request;
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::control::NotDelivered;
+use crate::store::StoreError;
+
+/// A refusal or a failure, `application/problem+json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Problem {
+    /// What kind of problem, as a URN that stays.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// The kind in a few words.
+    pub title: String,
+    /// The HTTP status.
+    pub status: u16,
+    /// What happened this time, in plain words.
+    pub detail: String,
+    /// The path that was asked.
+    #[schema(value_type = String)]
+    pub instance: Box<str>,
+    /// What is wrong, place by place.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub errors: Vec<ProblemItem>,
+}
+
+/// One thing that is wrong.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct ProblemItem {
+    /// Where in the document: `objects[2].position`; empty for the document itself.
+    pub path: String,
+    /// What was found.
+    pub found: String,
+    /// What was expected.
+    pub expected: String,
+    /// Line in the text, from 1, where known.
+    pub line: Option<u32>,
+    /// Column in the text, from 1, where known.
+    pub column: Option<u32>,
+}
+
+impl Problem {
+    /// A problem of a kind; the kind's name ends its URN.
+    pub fn new(status: StatusCode, kind: &str, title: &str, detail: impl Into<String>) -> Self {
+        Self {
+            kind: format!("urn:covr:problem:{kind}"),
+            title: title.into(),
+            status: status.as_u16(),
+            detail: detail.into(),
+            instance: Box::default(),
+            errors: Vec::new(),
+        }
+    }
+
+    /// The machine or the scene does not allow it now.
+    pub fn refused(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::CONFLICT, "refused", "Refused", detail)
+    }
+
+    /// Well-formed, but not something that can be.
+    pub fn invalid(detail: impl Into<String>, errors: Vec<ProblemItem>) -> Self {
+        Self { errors, ..Self::new(StatusCode::UNPROCESSABLE_ENTITY, "invalid", "Invalid", detail) }
+    }
+
+    /// Not JSON, or not the fields that are due.
+    pub fn malformed(detail: impl Into<String>, errors: Vec<ProblemItem>) -> Self {
+        Self { errors, ..Self::new(StatusCode::BAD_REQUEST, "malformed", "Malformed", detail) }
+    }
+
+    /// There is no such thing.
+    pub fn not_found(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::NOT_FOUND, "not-found", "Not found", detail)
+    }
+
+    /// Not for this asker.
+    pub fn forbidden(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::FORBIDDEN, "forbidden", "Forbidden", detail)
+    }
+
+    /// It could be done at another time.
+    pub fn unavailable(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::SERVICE_UNAVAILABLE, "unavailable", "Unavailable", detail)
+    }
+
+    fn of_status(status: StatusCode) -> Self {
+        let title = status.canonical_reason().unwrap_or("Error");
+        let (kind, detail) = match status {
+            StatusCode::NOT_FOUND => ("not-found", "there is nothing at this path"),
+            StatusCode::METHOD_NOT_ALLOWED => ("method-not-allowed", "this path does not take this method"),
+            StatusCode::PAYLOAD_TOO_LARGE => ("too-large", "the body is larger than 4 MiB"),
+            StatusCode::REQUEST_TIMEOUT => ("timeout", "the request took too long"),
+            StatusCode::INTERNAL_SERVER_ERROR => ("internal", "the server failed; its log says why"),
+            _ => ("http", title),
+        };
+        Self::new(status, kind, title, detail)
+    }
+}
+
+impl IntoResponse for Problem {
+    /// [`finish`] adds the path.
+    fn into_response(self) -> Response {
+        let status = StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+        let mut response = status.into_response();
+        response.extensions_mut().insert(self);
+        response
+    }
+}
+
+impl From<StoreError> for Problem {
+    fn from(error: StoreError) -> Self {
+        tracing::error!(%error, "the store failed");
+        Self::unavailable("the database did not answer; the server's log says why")
+    }
+}
+
+impl From<NotDelivered> for Problem {
+    fn from(error: NotDelivered) -> Self {
+        Self::unavailable(error.to_string())
+    }
+}
+
+/// Give every error under /api the form of a problem, with the path that was asked.
+pub async fn finish(request: Request, next: Next) -> Response {
+    let path = request.uri().path().to_owned();
+    let mut response = next.run(request).await;
+    let status = response.status();
+    let is_error = status.is_client_error() || status.is_server_error();
+    let known = response.extensions_mut().remove::<Problem>();
+    let in_api = path.starts_with("/api/");
+    let mut problem = match known {
+        Some(problem) => problem,
+        None if is_error && in_api => Problem::of_status(status),
+        None => return response,
+    };
+    problem.instance = path.into();
+    let (mut parts, _) = response.into_parts();
+    let body = Json(problem).into_response().into_body();
+    parts.headers.remove(header::CONTENT_LENGTH);
+    parts.headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(PROBLEM_JSON));
+    Response::from_parts(parts, Body::new(body))
+}
+
+/// The media type.
+pub const PROBLEM_JSON: &str = "application/problem+json";

@@ -1,0 +1,202 @@
+//! Scenes: upload, check, versions, activation.
+
+use std::sync::Arc;
+
+use axum::Json;
+use axum::body::Bytes;
+use axum::extract::{Path, Query, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use covr_wire::scene::{SceneError, parse_scene, scene_schema};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::input::Author;
+use super::problem::{Problem, ProblemItem};
+use crate::app::App;
+use crate::stage::ActivationRefused;
+use crate::store::StoredScene;
+
+/// Where a scene was stored.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SceneStored {
+    /// The store's number of the scene.
+    pub id: i64,
+    /// Its version.
+    pub version: i64,
+}
+
+/// A scene passed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SceneChecked {
+    /// Always true: a scene that does not pass is a problem.
+    pub valid: bool,
+    /// Its name.
+    pub name: String,
+    /// How many objects it has.
+    pub objects: usize,
+}
+
+/// A scene is active.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SceneActivated {
+    /// The store's number of the scene.
+    pub id: i64,
+    /// The version that is active.
+    pub version: i64,
+    /// What it did, in plain words.
+    pub detail: String,
+}
+
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Version {
+    /// A version; the newest when not given.
+    version: Option<i64>,
+}
+
+/// The routes.
+pub fn routes() -> OpenApiRouter<Arc<App>> {
+    OpenApiRouter::new()
+        .routes(routes!(list, add))
+        .routes(routes!(check))
+        .routes(routes!(read, replace))
+        .routes(routes!(activate))
+        .routes(routes!(schema))
+}
+
+/// Every scene.
+#[utoipa::path(get, path = "/scenes", tag = "scenes", responses((status = 200, body = Vec<StoredScene>)))]
+async fn list(State(app): State<Arc<App>>) -> Result<Json<Vec<StoredScene>>, Problem> {
+    Ok(Json(app.store.scenes().await?))
+}
+
+/// Store a new scene as its version 1. It is not active by that.
+#[utoipa::path(post, path = "/scenes", tag = "scenes", request_body = ref("#/components/schemas/SceneDocument"),
+    responses((status = 201, body = SceneStored), (status = 400, description = "Not JSON", body = Problem),
+        (status = 422, description = "Not a scene, place by place", body = Problem)))]
+async fn add(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Result<Response, Problem> {
+    let (document, _) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
+    let id = app.store.add_scene(&document, &author.0).await?;
+    let place = [(header::LOCATION, format!("/api/v1/scenes/{id}"))];
+    Ok((StatusCode::CREATED, place, Json(SceneStored { id, version: 1 })).into_response())
+}
+
+/// Check a scene and store nothing.
+#[utoipa::path(post, path = "/scenes/check", tag = "scenes", request_body = ref("#/components/schemas/SceneDocument"),
+    responses((status = 200, body = SceneChecked), (status = 400, description = "Not JSON", body = Problem),
+        (status = 422, description = "Not a scene, place by place", body = Problem)))]
+async fn check(body: Bytes) -> Result<Json<SceneChecked>, Problem> {
+    let (document, _) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
+    Ok(Json(SceneChecked { valid: true, objects: document.objects.len(), name: document.name }))
+}
+
+/// A scene's document. Version, author and date are in the headers `X-Covr-Version`, `X-Covr-Author` and `X-Covr-Created`.
+#[utoipa::path(get, path = "/scenes/{id}", tag = "scenes", params(("id" = i64, Path, description = "The store's number"), Version),
+    responses((status = 200, body = ref("#/components/schemas/SceneDocument")), (status = 404, description = "No such scene", body = Problem)))]
+async fn read(
+    State(app): State<Arc<App>>,
+    Path(id): Path<String>,
+    Query(Version { version }): Query<Version>,
+) -> Result<Response, Problem> {
+    let stored = app.store.scene(number(&id)?, version).await?.ok_or_else(|| no_scene(&id, version))?;
+    let mut headers = HeaderMap::new();
+    headers.insert("x-covr-version", stored.version.into());
+    let author =
+        percent_encoding::utf8_percent_encode(&stored.author, percent_encoding::CONTROLS).to_string();
+    for (name, value) in [("x-covr-author", author), ("x-covr-created", stored.created)] {
+        if let Ok(value) = value.parse() {
+            headers.insert(name, value);
+        }
+    }
+    Ok((headers, Json(stored.document)).into_response())
+}
+
+/// Store a new version of a scene. The active scene stays as it is until the new version is activated.
+#[utoipa::path(put, path = "/scenes/{id}", tag = "scenes", params(("id" = i64, Path, description = "The store's number")),
+    request_body = ref("#/components/schemas/SceneDocument"),
+    responses((status = 200, body = SceneStored), (status = 400, description = "Not JSON", body = Problem),
+        (status = 404, description = "No such scene", body = Problem), (status = 422, description = "Not a scene, place by place", body = Problem)))]
+async fn replace(
+    State(app): State<Arc<App>>,
+    author: Author,
+    Path(id): Path<String>,
+    body: Bytes,
+) -> Result<Json<SceneStored>, Problem> {
+    let (document, _) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
+    let id_number = number(&id)?;
+    let version = app
+        .store
+        .add_scene_version(id_number, &document, &author.0)
+        .await?
+        .ok_or_else(|| no_scene(&id, None))?;
+    Ok(Json(SceneStored { id: id_number, version }))
+}
+
+/// Play a scene: its newest version, or the one named. Its priors start from the document.
+#[utoipa::path(put, path = "/scenes/{id}/activate", tag = "scenes", params(("id" = i64, Path, description = "The store's number"), Version),
+    responses((status = 200, body = SceneActivated), (status = 404, description = "No such scene", body = Problem),
+        (status = 409, description = "Not now", body = Problem)))]
+async fn activate(
+    State(app): State<Arc<App>>,
+    author: Author,
+    Path(id): Path<String>,
+    Query(Version { version }): Query<Version>,
+) -> Result<Json<SceneActivated>, Problem> {
+    let stored = app.store.scene(number(&id)?, version).await?.ok_or_else(|| no_scene(&id, version))?;
+    let (id, version, name) = (stored.id, stored.version, stored.document.name.clone());
+    let answer = app.stage.activate(&app.control, &app.store, stored).await.map_err(|why| match why {
+        ActivationRefused::Invalid(errors) => refused(&[], errors),
+        ActivationRefused::Refused(detail) => Problem::refused(detail),
+        ActivationRefused::NotDelivered(why) => why.into(),
+        ActivationRefused::Store(why) => why.into(),
+    })?;
+    app.recorder.record(
+        "scene_activated",
+        format!("{} activated \"{name}\" (scene {id}, version {version})", author.0),
+        json!({ "author": author.0, "scene": id, "version": version, "name": name }),
+    );
+    app.recorder.settled().await;
+    Ok(Json(SceneActivated { id, version, detail: answer.detail }))
+}
+
+/// The JSON Schema of a scene.
+#[utoipa::path(get, path = "/scene.schema.json", tag = "scenes",
+    responses((status = 200, description = "JSON Schema, draft 2020-12", content_type = "application/schema+json")))]
+async fn schema() -> Response {
+    ([(header::CONTENT_TYPE, "application/schema+json")], scene_schema().to_string()).into_response()
+}
+
+/// What is not JSON at all is malformed; what is JSON but no scene is invalid.
+fn refused(text: &[u8], errors: Vec<SceneError>) -> Problem {
+    let is_json = serde_json::from_slice::<serde::de::IgnoredAny>(text).is_ok() || text.is_empty();
+    let count = errors.len();
+    let first = errors.first().map(ToString::to_string).unwrap_or_default();
+    let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
+    let items = errors
+        .into_iter()
+        .map(|error| ProblemItem {
+            path: error.path,
+            found: error.found,
+            expected: error.expected,
+            line: error.line.and_then(|line| line.try_into().ok()),
+            column: error.column.and_then(|column| column.try_into().ok()),
+        })
+        .collect();
+    let detail = format!("{first}{more}");
+    if is_json { Problem::invalid(detail, items) } else { Problem::malformed(detail, items) }
+}
+
+fn number(id: &str) -> Result<i64, Problem> {
+    id.parse().map_err(|_| no_scene(id, None))
+}
+
+fn no_scene(id: &str, version: Option<i64>) -> Problem {
+    Problem::not_found(match version {
+        None => format!("there is no scene {id}"),
+        Some(version) => format!("there is no version {version} of scene {id}"),
+    })
+}

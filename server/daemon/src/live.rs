@@ -1,0 +1,89 @@
+//! From the control thread's published state to what dashboards, metrics and `GET /api/v1/state` show.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use covr_engine::mode::Mode;
+use covr_wire::dashboard::{Snapshot, Surroundings, ToDashboard};
+use metrics::{counter, gauge};
+use tokio::sync::watch;
+
+use crate::app::App;
+use crate::control::Published;
+
+/// The wire's snapshot of a published state.
+pub fn wire_snapshot(app: &App, published: &Published) -> Snapshot {
+    let around = Surroundings {
+        generation: published.generation,
+        names: &app.persons.names(),
+        control_loop: published.control_loop.clone(),
+        clients: app.clients.list(),
+        scene_id: Some(app.stage.active().id),
+        session_id: app.recorder.session_id(),
+    };
+    Snapshot::new(&published.snapshot, around)
+}
+
+/// Turn each newly published state into a dashboard's frame, once for all of them, and into metrics.
+pub async fn publish(app: Arc<App>, frames: watch::Sender<Arc<str>>) {
+    let mut published = app.control.watch_published();
+    let mut meter = Meter::new();
+    loop {
+        let now = published.borrow_and_update().clone();
+        if frames.receiver_count() > 1 {
+            let message = ToDashboard::Snapshot(Box::new(wire_snapshot(&app, &now)));
+            match serde_json::to_string(&message) {
+                Ok(text) => {
+                    frames.send_replace(text.into());
+                }
+                Err(error) => tracing::error!(%error, "a snapshot cannot be written as JSON"),
+            }
+        }
+        meter.show(&app, &now, frames.receiver_count() - 1);
+        if published.changed().await.is_err() {
+            return;
+        }
+    }
+}
+
+/// Metrics, at most four times a second.
+struct Meter {
+    next: Instant,
+}
+
+impl Meter {
+    fn new() -> Self {
+        gauge!("covr_build_info", "version" => env!("CARGO_PKG_VERSION")).set(1.0);
+        Self { next: Instant::now() }
+    }
+
+    fn show(&mut self, app: &App, published: &Published, dashboards: usize) {
+        if Instant::now() < self.next {
+            return;
+        }
+        self.next = Instant::now() + Duration::from_millis(250);
+        let control_loop = &published.control_loop;
+        counter!("covr_control_steps_total").absolute(control_loop.steps);
+        counter!("covr_control_missed_deadlines_total").absolute(control_loop.missed_deadlines);
+        gauge!("covr_control_lateness_p99_seconds").set(control_loop.lateness_p99_micros * 1e-6);
+        gauge!("covr_control_lateness_max_seconds").set(control_loop.lateness_max_micros * 1e-6);
+        for mode in Mode::ALL {
+            let is_it = published.snapshot.mode == mode;
+            gauge!("covr_mode", "mode" => mode.name()).set(if is_it { 1.0 } else { 0.0 });
+        }
+        counter!("covr_events_dropped_total").absolute(app.control.events_dropped() + app.recorder.dropped());
+        gauge!("covr_clients").set(app.clients.list().len() as f64);
+        gauge!("covr_dashboards").set(dashboards as f64);
+        gauge!("covr_persons").set(published.snapshot.persons.len() as f64);
+        gauge!("covr_session_running").set(if app.recorder.session_id().is_some() { 1.0 } else { 0.0 });
+        let speed = published.snapshot.column.velocity.norm();
+        gauge!("covr_column_speed_mps").set(speed);
+    }
+}
+
+/// Register every metric of the sockets, so that each is there from the first scrape on.
+pub fn describe_metrics() {
+    for name in ["covr_poses_total", "covr_client_errors_total", "covr_store_errors_total"] {
+        counter!(name).increment(0);
+    }
+}

@@ -1,0 +1,248 @@
+//! The recorder: takes events from a bounded queue, shows them to dashboards at once, and stores them in order.
+//! It alone writes sessions and the latch, so that they follow the order of events.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use covr_engine::event::EventKind;
+use covr_engine::mode::Mode;
+use covr_wire::dashboard::Event;
+use serde_json::Value;
+use tokio::sync::{broadcast, mpsc, oneshot, watch};
+
+use crate::clock::{Clock, wall_now};
+use crate::control::EngineEvent;
+use crate::persons::Persons;
+use crate::stage::Stage;
+use crate::store::{NewEvent, SessionEnd, Store, StoreError};
+
+/// Something for the record.
+#[derive(Debug)]
+pub enum Record {
+    /// From the engine.
+    Engine(EngineEvent),
+    /// From whoever carried a request, a change or a message.
+    Act(Event),
+    /// Say when everything before this is stored.
+    Settle(oneshot::Sender<Settled>),
+    /// The server ends: close the session.
+    End(oneshot::Sender<Settled>),
+}
+
+/// Whether everything before was stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Settled {
+    /// It survives kill -9.
+    Stored,
+    /// Something could not be stored; the log says what.
+    Lost,
+}
+
+/// The way to the recorder. Cheap to clone.
+#[derive(Debug, Clone)]
+pub struct Recorder {
+    records: mpsc::Sender<Record>,
+    live: broadcast::Sender<Arc<Event>>,
+    session: watch::Receiver<Option<i64>>,
+    dropped: Arc<AtomicU64>,
+    clock: Clock,
+}
+
+/// What the recorder works with.
+pub struct Desk {
+    /// Where it writes.
+    pub store: Store,
+    /// The server's clock.
+    pub clock: Clock,
+    /// Names of people.
+    pub persons: Arc<Persons>,
+    /// The active scene.
+    pub stage: Arc<Stage>,
+}
+
+impl Recorder {
+    /// Start the recorder's task. The sender is for the control thread.
+    pub fn start(desk: Desk, live_queue: usize) -> (Self, mpsc::Sender<Record>) {
+        let (records, records_out) = mpsc::channel(QUEUE);
+        let (live, _) = broadcast::channel(live_queue);
+        let session = watch::Sender::new(None);
+        let recorder = Self {
+            records: records.clone(),
+            live: live.clone(),
+            session: session.subscribe(),
+            dropped: Arc::default(),
+            clock: desk.clock,
+        };
+        tokio::spawn(Task { desk, live, session, pending: Vec::new(), lost: false }.run(records_out));
+        (recorder, records)
+    }
+
+    /// Record an act; with the queue full it is dropped and counted.
+    pub fn record(&self, kind: &str, summary: impl Into<String>, detail: Value) {
+        let at = self.clock.now();
+        let event = Event {
+            at_micros: at.micros(),
+            at: self.clock.wall_text(at),
+            kind: kind.into(),
+            summary: summary.into(),
+            detail,
+        };
+        if self.records.try_send(Record::Act(event)).is_err() {
+            self.dropped.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+
+    /// Wait until everything recorded so far is stored.
+    pub async fn settled(&self) -> Settled {
+        self.wait_for(Record::Settle).await
+    }
+
+    /// Close the session, at the end of the server.
+    pub async fn end(&self) -> Settled {
+        self.wait_for(Record::End).await
+    }
+
+    /// Events as they happen.
+    pub fn live(&self) -> broadcast::Receiver<Arc<Event>> {
+        self.live.subscribe()
+    }
+
+    /// The running session.
+    pub fn session_id(&self) -> Option<i64> {
+        *self.session.borrow()
+    }
+
+    /// Acts that found the queue full.
+    pub fn dropped(&self) -> u64 {
+        self.dropped.load(Ordering::Relaxed)
+    }
+
+    async fn wait_for(&self, record: impl FnOnce(oneshot::Sender<Settled>) -> Record) -> Settled {
+        let (done, settled) = oneshot::channel();
+        if self.records.send(record(done)).await.is_err() {
+            return Settled::Lost;
+        }
+        settled.await.unwrap_or(Settled::Lost)
+    }
+}
+
+/// The task's own.
+struct Task {
+    desk: Desk,
+    live: broadcast::Sender<Arc<Event>>,
+    session: watch::Sender<Option<i64>>,
+    pending: Vec<NewEvent>,
+    lost: bool,
+}
+
+impl Task {
+    async fn run(mut self, mut records: mpsc::Receiver<Record>) {
+        let mut batch = Vec::with_capacity(BATCH);
+        while records.recv_many(&mut batch, BATCH).await > 0 {
+            for record in batch.drain(..) {
+                self.take(record).await;
+            }
+            self.flush().await;
+        }
+    }
+
+    async fn take(&mut self, record: Record) {
+        match record {
+            Record::Act(event) => self.add(event),
+            Record::Engine(EngineEvent { event, scene }) => {
+                let at = self.desk.clock.wall_text(event.at);
+                let objects: Vec<String> =
+                    scene.spec().objects.iter().map(|object| object.id.clone()).collect();
+                let shown = Event::new(&event, at.clone(), &self.desk.persons.names(), &objects);
+                // The session's first event belongs to it, and so does its last.
+                let change = if let EventKind::ModeChanged { from, to, because } = &event.kind {
+                    Some((*from, *to, because.clone()))
+                } else {
+                    None
+                };
+                if let Some((_, Mode::Following, _)) = change {
+                    self.begin_session(&at).await;
+                }
+                self.add(shown);
+                if let Some((from, to, because)) = change {
+                    self.mode_changed(&at, from, to, &because).await;
+                }
+            }
+            Record::Settle(done) => {
+                self.flush().await;
+                let _ = done.send(self.settled());
+            }
+            Record::End(done) => {
+                self.flush().await;
+                self.end_session(&wall_now(), SessionEnd::Shutdown).await;
+                let _ = done.send(self.settled());
+            }
+        }
+    }
+
+    fn add(&mut self, event: Event) {
+        // No dashboard listens: nobody needs to be told.
+        let _ = self.live.send(Arc::new(event.clone()));
+        self.pending.push(NewEvent { session_id: *self.session.borrow(), event });
+    }
+
+    async fn flush(&mut self) {
+        if self.pending.is_empty() {
+            return;
+        }
+        let pending = std::mem::take(&mut self.pending);
+        let done = self.desk.store.add_events(&pending).await;
+        self.check(done, "events");
+    }
+
+    async fn mode_changed(&mut self, at: &str, from: Mode, to: Mode, because: &str) {
+        if to == Mode::LatchedStop {
+            let done = self.desk.store.set_latched(Some(because)).await;
+            self.check(done, "the latched stop");
+        } else if from == Mode::LatchedStop {
+            let done = self.desk.store.set_latched(None).await;
+            self.check(done, "the reset");
+        }
+        let end = match to {
+            Mode::Following | Mode::ProtectiveStop => return,
+            Mode::LatchedStop => SessionEnd::LatchedStop,
+            Mode::Faulted => SessionEnd::Faulted,
+            Mode::Disarmed | Mode::Homing | Mode::Ready => SessionEnd::Disarmed,
+        };
+        self.flush().await;
+        self.end_session(at, end).await;
+    }
+
+    async fn begin_session(&mut self, at: &str) {
+        if self.session.borrow().is_some() {
+            return;
+        }
+        self.flush().await;
+        let done = self.desk.store.begin_session(at, self.desk.stage.active().key()).await;
+        if let Some(id) = self.check(done, "the session") {
+            self.session.send_replace(Some(id));
+        }
+    }
+
+    async fn end_session(&mut self, at: &str, how: SessionEnd) {
+        let Some(id) = self.session.send_replace(None) else { return };
+        let done = self.desk.store.end_session(id, at, how).await;
+        self.check(done, "the end of the session");
+    }
+
+    fn check<T>(&mut self, done: Result<T, StoreError>, what: &str) -> Option<T> {
+        done.inspect_err(|error| {
+            self.lost = true;
+            metrics::counter!("covr_store_errors_total").increment(1);
+            tracing::error!(%error, "cannot store {what}");
+        })
+        .ok()
+    }
+
+    fn settled(&mut self) -> Settled {
+        if std::mem::take(&mut self.lost) { Settled::Lost } else { Settled::Stored }
+    }
+}
+
+const QUEUE: usize = 4_096;
+const BATCH: usize = 256;

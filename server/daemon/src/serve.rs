@@ -1,0 +1,305 @@
+//! The server: put together, run, and taken apart with the machine at rest first.
+
+use std::future::Future;
+use std::net::SocketAddr;
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use anyhow::{Context, bail, ensure};
+use covr_engine::mode::{Mode, RequestKind};
+use covr_engine::time::Span;
+use covr_engine::{Engine, EngineConfig, Request};
+use covr_gantry::contract::Gantry;
+use covr_gantry::sim::SimulatedMachine;
+use covr_gantry::sim::parameters::MachineParameters;
+use covr_wire::scene::parse_scene;
+use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
+use tokio::net::TcpListener;
+use tokio::sync::{Semaphore, watch};
+use tokio::task::JoinHandle;
+
+use crate::app::App;
+use crate::clients::Clients;
+use crate::clock::Clock;
+use crate::config::{Config, MachineKind};
+use crate::control::{Control, Ended, Setup, StopLaneName};
+use crate::persons::Persons;
+use crate::recorder::{Desk, Recorder};
+use crate::stage::{ActiveScene, Stage};
+use crate::store::Store;
+use crate::{http, live};
+
+/// A running server.
+pub struct Server {
+    app: Arc<App>,
+    address: SocketAddr,
+    closing: watch::Sender<Option<String>>,
+    http: JoinHandle<std::io::Result<()>>,
+}
+
+/// Whether the network may reach the server.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reach {
+    /// Programs on this machine alone.
+    ThisMachine,
+    /// Everybody on the network, without roles or TLS: for the simulated machine alone.
+    InsecureLan,
+}
+
+impl Server {
+    /// Start: store, control thread, sockets. The machine starts disarmed, or latched if the last run ended so.
+    pub async fn start(config: Config, reach: Reach) -> anyhow::Result<Self> {
+        check_reach(&config, reach)?;
+        let prometheus = prometheus()?;
+        let clock = Clock::started_now();
+        let path = &config.server.database;
+        let store = Store::open(path).await.with_context(|| format!("database {}", path.display()))?;
+        let left_over = store.take_over().await.context("database")?;
+        if left_over.interrupted_sessions > 0 {
+            tracing::warn!(
+                sessions = left_over.interrupted_sessions,
+                "the last run was interrupted in a session"
+            );
+        }
+        if let Some(because) = &left_over.latched_because {
+            tracing::warn!(because, "the last run ended in a latched stop; reset it to go on");
+        }
+        let active = active_scene(&store, left_over.active_scene).await?;
+        let priors = store.priors_in_force().await?;
+
+        let persons = Arc::new(Persons::default());
+        let clients = Arc::new(Clients::new(config.clients.most));
+        let scene = active.scene.clone();
+        let stage = Arc::new(Stage::new(active));
+        let desk = Desk { store: store.clone(), clock, persons: persons.clone(), stage: stage.clone() };
+        let (recorder, events) = Recorder::start(desk, config.dashboards.event_queue);
+        let period = Duration::from_secs_f64(1.0 / config.control.rate_hz);
+        let engine_config = EngineConfig {
+            limits: config.machine.limits(),
+            travel: config.machine.travel(),
+            period: Span::from_secs(period.as_secs_f64()),
+            intention_rule: config.people.intention_rule,
+            v_h_mps: config.people.v_h_mps,
+            latched_because: left_over.latched_because,
+        };
+        let control = Control::start(Setup {
+            engine: Engine::new(engine_config, scene),
+            gantry: machine(&config)?,
+            clock,
+            period,
+            publish_every: Duration::from_secs_f64(1.0 / config.control.publish_hz),
+            real_time_priority: config.control.real_time.then_some(config.control.priority),
+            request_queue: config.control.request_queue,
+            events,
+        })
+        .context("the control thread")?;
+        stage.restore_priors(&control, &priors).await?;
+
+        let listener = TcpListener::bind(config.server.bind)
+            .await
+            .with_context(|| format!("cannot listen on {}", config.server.bind))?;
+        let address = listener.local_addr()?;
+        let dashboards = config.dashboards.most;
+        let closing = watch::Sender::new(None);
+        let frames = watch::Sender::new(Arc::from(""));
+        live::describe_metrics();
+        let app = Arc::new(App {
+            config,
+            clock,
+            control,
+            store,
+            recorder,
+            persons,
+            stage,
+            clients,
+            dashboard_seats: Arc::new(Semaphore::new(dashboards)),
+            frames: frames.subscribe(),
+            closing: closing.subscribe(),
+            prometheus,
+        });
+        tokio::spawn(live::publish(app.clone(), frames));
+        let router = http::router(app.clone());
+        let mut closed = closing.subscribe();
+        let http = tokio::spawn(async move {
+            axum::serve(listener, router)
+                .with_graceful_shutdown(async move {
+                    let _ = closed.wait_for(Option::is_some).await;
+                })
+                .await
+        });
+        tracing::info!(%address, version = env!("CARGO_PKG_VERSION"), "covr serves");
+        Ok(Self { app, address, closing, http })
+    }
+
+    /// Where it listens.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// What its handlers share.
+    pub fn app(&self) -> &Arc<App> {
+        &self.app
+    }
+
+    /// Serve until `told` says why to end, or until something that must not end does. The machine comes to rest
+    /// first, then the sockets close with the reason, then the session and the store.
+    pub async fn run_until(mut self, told: impl Future<Output = String>) -> anyhow::Result<()> {
+        tokio::select! {
+            reason = told => {
+                tracing::info!(reason, "the server ends: machine at rest first");
+                self.bring_to_rest().await;
+                self.app.control.quit();
+                self.app.control.ended().await;
+                self.close(&reason).await;
+                Ok(())
+            }
+            ended = self.app.control.ended() => {
+                self.close("the control loop ended").await;
+                match ended {
+                    Ended::Panicked(words) => bail!("the control thread panicked: {words}; the machine was told to stop"),
+                    Ended::AsAsked => bail!("the control thread ended unasked; the machine was told to stop"),
+                }
+            }
+            ended = &mut self.http => {
+                self.bring_to_rest().await;
+                self.app.control.quit();
+                self.close("the HTTP server ended").await;
+                bail!("the HTTP server ended: {ended:?}")
+            }
+        }
+    }
+
+    async fn bring_to_rest(&self) {
+        let longest = Duration::from_secs_f64(self.app.config.server.rest_timeout_secs);
+        let at_rest = async {
+            let mut published = self.app.control.watch_published();
+            if let Err(why) =
+                self.app.control.ask(Request::Machine(RequestKind::Disarm, Some("shutdown".into()))).await
+            {
+                tracing::error!(%why, "cannot disarm");
+                return;
+            }
+            let _ = published
+                .wait_for(|p| {
+                    let moves = p.snapshot.column.velocity.norm() > AT_REST_MPS;
+                    !moves && matches!(p.snapshot.mode, Mode::Disarmed | Mode::LatchedStop | Mode::Faulted)
+                })
+                .await;
+        };
+        if tokio::time::timeout(longest, at_rest).await.is_err() {
+            tracing::error!(secs = longest.as_secs_f64(), "the machine did not come to rest in time");
+        }
+    }
+
+    async fn close(&mut self, reason: &str) {
+        self.closing.send_replace(Some(reason.into()));
+        if !self.http.is_finished() && tokio::time::timeout(LONGEST_CLOSE, &mut self.http).await.is_err() {
+            tracing::warn!("some connections did not close in time");
+            self.http.abort();
+        }
+        self.app.recorder.end().await;
+        self.app.store.close().await;
+        tracing::info!("closed");
+    }
+}
+
+/// SIGINT or SIGTERM; the reason to end.
+pub async fn told_by_signal() -> String {
+    use tokio::signal::unix::{SignalKind, signal};
+    let (Ok(mut interrupt), Ok(mut terminate)) =
+        (signal(SignalKind::interrupt()), signal(SignalKind::terminate()))
+    else {
+        tracing::error!("cannot listen for signals");
+        return std::future::pending().await;
+    };
+    tokio::select! {
+        _ = interrupt.recv() => "SIGINT".into(),
+        _ = terminate.recv() => "SIGTERM".into(),
+    }
+}
+
+/// Press the stop at each SIGUSR1, for as long as the server runs.
+pub async fn stop_at_signal(app: Arc<App>) {
+    use tokio::signal::unix::{SignalKind, signal};
+    let Ok(mut pressed) = signal(SignalKind::user_defined1()) else {
+        tracing::error!("cannot listen for SIGUSR1");
+        return;
+    };
+    while pressed.recv().await.is_some() {
+        let received_at = std::time::Instant::now();
+        let asker = crate::app::Asker { by: "signal", author: "SIGUSR1".into() };
+        match app.stop(&asker, StopLaneName::Signal, None, received_at).await {
+            Ok(to_drive) => tracing::warn!(to_drive_micros = to_drive.as_micros() as u64, "SIGUSR1: stopped"),
+            Err(why) => tracing::error!(%why, "SIGUSR1: the stop was not acknowledged"),
+        }
+    }
+}
+
+fn check_reach(config: &Config, reach: Reach) -> anyhow::Result<()> {
+    let bind = config.server.bind;
+    if bind.ip().is_loopback() {
+        return Ok(());
+    }
+    ensure!(
+        reach == Reach::InsecureLan,
+        "server.bind: {bind} is reachable from the network, and the server has no roles and no TLS yet; \
+         use 127.0.0.1, or say --insecure-lan (simulated machine only)"
+    );
+    ensure!(
+        config.machine.kind == MachineKind::Simulated,
+        "--insecure-lan is for the simulated machine alone, not for \"{}\"",
+        config.machine.kind.name()
+    );
+    Ok(())
+}
+
+fn machine(config: &Config) -> anyhow::Result<Box<dyn Gantry>> {
+    match config.machine.kind {
+        MachineKind::Simulated => {
+            let parameters = MachineParameters {
+                limits: config.machine.limits(),
+                ..MachineParameters::paper(config.machine.travel())
+            };
+            Ok(Box::new(SimulatedMachine::new(parameters).context("the simulated machine")?))
+        }
+    }
+}
+
+/// The scene of the last run; at the very first start, the one that comes with the server.
+async fn active_scene(store: &Store, last: Option<(i64, i64)>) -> anyhow::Result<ActiveScene> {
+    if let Some((id, version)) = last
+        && let Some(stored) = store.scene(id, Some(version)).await?
+    {
+        match ActiveScene::build(stored) {
+            Ok(active) => return Ok(active),
+            Err(errors) => {
+                for error in errors {
+                    tracing::error!(scene = id, version, %error, "the active scene does not pass today's checks");
+                }
+            }
+        }
+    }
+    let (document, _) = parse_scene(FIRST_SCENE.as_bytes()).map_err(|errors| {
+        anyhow::anyhow!(
+            "the scene that comes with the server: {}",
+            errors.first().map(ToString::to_string).unwrap_or_default()
+        )
+    })?;
+    let id = store.add_scene(&document, "covr").await?;
+    store.set_active_scene(id, 1).await?;
+    let stored = store.scene(id, Some(1)).await?.context("the scene that was just stored is missing")?;
+    ActiveScene::build(stored).map_err(|errors| anyhow::anyhow!("{errors:?}"))
+}
+
+/// One recorder of metrics for the process, however many servers a test starts.
+fn prometheus() -> anyhow::Result<PrometheusHandle> {
+    static HANDLE: OnceLock<Result<PrometheusHandle, String>> = OnceLock::new();
+    HANDLE
+        .get_or_init(|| PrometheusBuilder::new().install_recorder().map_err(|why| why.to_string()))
+        .clone()
+        .map_err(|why| anyhow::anyhow!("metrics: {why}"))
+}
+
+const FIRST_SCENE: &str = include_str!("first_scene.json");
+const AT_REST_MPS: f64 = 0.01;
+const LONGEST_CLOSE: Duration = Duration::from_secs(3);

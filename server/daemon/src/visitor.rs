@@ -1,0 +1,133 @@
+//! `covr visitor`: a person, recorded or made up, as a VR client over the real WebSocket at real rate.
+//!
+//! It knows the server as any headset does: by its protocol and its public HTTP API.
+
+mod api;
+mod headset;
+mod recorded;
+
+use std::time::Duration;
+
+use anyhow::{Context, bail};
+use covr_engine::frames::{Pose, Room};
+use covr_engine::time::Time;
+use covr_study::visitor::Visitor as MadeUp;
+use covr_wire::scene::{SceneDocument, build_scene};
+
+use crate::cli::Visitor;
+use api::Api;
+use headset::Headset;
+use recorded::Program;
+
+/// Play until the connection is lost; with `--wait-for-server`, then again.
+pub async fn run(options: Visitor) -> anyhow::Result<()> {
+    let api = Api::new(&options.url)?;
+    let mut program =
+        options.trace.as_deref().map(|path| Program::open(path, options.trial.as_deref())).transpose()?;
+    loop {
+        if options.wait_for_server {
+            api.wait_until_healthy().await;
+        }
+        let Err(error) = visit(&options, &api, program.as_mut()).await;
+        if !options.wait_for_server || error.downcast_ref::<headset::Lost>().is_none() {
+            return Err(error);
+        }
+        tracing::warn!("{error:#}; waiting for the server");
+        tokio::time::sleep(RECONNECT_AFTER).await;
+    }
+}
+
+/// One connection's life.
+async fn visit(
+    options: &Visitor,
+    api: &Api,
+    program: Option<&mut Program>,
+) -> Result<std::convert::Infallible, anyhow::Error> {
+    if options.arm {
+        api.home_simulated_machine().await?;
+    }
+    let mut headset = Headset::connect(&options.url, &options.name).await?;
+    if options.arm {
+        api.arm().await?;
+    }
+    match program {
+        Some(program) => play_recordings(options, api, &mut headset, program).await,
+        None => walk_for_ever(options, &mut headset).await,
+    }
+}
+
+async fn play_recordings(
+    options: &Visitor,
+    api: &Api,
+    headset: &mut Headset,
+    program: &mut Program,
+) -> Result<std::convert::Infallible, anyhow::Error> {
+    let mut shown: Option<SceneDocument> = None;
+    loop {
+        let recording = program.next_recording()?;
+        if let Some(scene) = recorded::scene_of(&recording)
+            && shown.as_ref() != Some(&scene)
+        {
+            api.show_scene(&scene, &options.name).await?;
+            shown = Some(scene);
+        }
+        tracing::info!(
+            trial = recording.trial,
+            person = recording.user,
+            secs = recording.duration().secs(),
+            "a recorded person enters"
+        );
+        let room_from_trace = recording.room_from_trace();
+        let samples = recording
+            .resampled(SEND_HZ / options.speed)
+            .map(|sample| (sample.at, room_from_trace.pose(&sample.pose)));
+        play(options, headset, samples).await?;
+    }
+}
+
+async fn walk_for_ever(
+    options: &Visitor,
+    headset: &mut Headset,
+) -> Result<std::convert::Infallible, anyhow::Error> {
+    for walk in 0.. {
+        let Some(document) = headset.scene() else { bail!("the server has no active scene") };
+        let scene = build_scene(document).map_err(|errors| {
+            anyhow::anyhow!(
+                "the server's scene: {}",
+                errors.first().map(ToString::to_string).unwrap_or_default()
+            )
+        })?;
+        tracing::info!(scene = document.name, "a made-up person enters");
+        let mut person =
+            MadeUp::of_scene(scene.spec(), SEND_HZ / options.speed, options.seed.wrapping_add(walk));
+        let samples =
+            std::iter::from_fn(move || Some(person.sample()).map(|sample| (sample.at, sample.pose)));
+        play(options, headset, samples).await?;
+    }
+    bail!("the visitor walked for ever")
+}
+
+/// Enter, send each sample at its moment, leave. Ends early when the server changes its scene.
+async fn play(
+    options: &Visitor,
+    headset: &mut Headset,
+    samples: impl Iterator<Item = (Time, Pose<Room>)>,
+) -> anyhow::Result<()> {
+    let scene_version = headset.scene_version();
+    headset.enter(&options.name).await?;
+    let started = tokio::time::Instant::now();
+    let mut first = None;
+    for (at, pose) in samples {
+        let since_first = (at - *first.get_or_insert(at)).secs() / options.speed;
+        headset.listen_until(started + Duration::from_secs_f64(since_first.max(0.0))).await?;
+        if options.trace.is_none() && headset.scene_version() != scene_version {
+            break;
+        }
+        headset.send_pose(&options.name, &pose).await.context("a pose")?;
+    }
+    headset.leave(&options.name).await
+}
+
+/// Within the protocol's 60 to 120 Hz, whatever the speed.
+const SEND_HZ: f64 = 75.0;
+const RECONNECT_AFTER: Duration = Duration::from_millis(500);

@@ -1,0 +1,130 @@
+//! The server's public API, as the visitor uses it.
+
+use std::time::Duration;
+
+use anyhow::{Context, bail, ensure};
+use covr_wire::dashboard::{Mode, Snapshot, ToDashboard};
+use covr_wire::scene::SceneDocument;
+use futures_util::StreamExt;
+use reqwest::{Client, Response};
+use tokio::time::Instant;
+
+use crate::http::{Problem, SceneStored};
+
+/// The server's HTTP side.
+pub struct Api {
+    http: Client,
+    base: String,
+    sockets: String,
+}
+
+impl Api {
+    /// Of the server at this `ws://` address.
+    pub fn new(url: &str) -> anyhow::Result<Self> {
+        let sockets = url.trim_end_matches('/').to_owned();
+        let host = sockets
+            .strip_prefix("ws://")
+            .with_context(|| format!("--url: found {url}, expected ws://HOST:PORT"))?;
+        let http = Client::builder().timeout(LONGEST_CALL).build()?;
+        Ok(Self { http, base: format!("http://{host}"), sockets })
+    }
+
+    /// Wait until the server answers, for ever.
+    pub async fn wait_until_healthy(&self) {
+        loop {
+            let answered = self.http.get(format!("{}/healthz", self.base)).send().await;
+            if answered.is_ok_and(|response| response.status().is_success()) {
+                return;
+            }
+            tokio::time::sleep(BETWEEN_TRIES).await;
+        }
+    }
+
+    /// Home the machine, if it is the simulated one, and wait until it is ready.
+    pub async fn home_simulated_machine(&self) -> anyhow::Result<()> {
+        let machine = self.machine().await?;
+        ensure!(
+            machine == "simulated",
+            "--arm is for the simulated machine alone; this server drives \"{machine}\""
+        );
+        let deadline = Instant::now() + LONGEST_HOMING;
+        let mut asked = false;
+        loop {
+            let state = self.state().await?;
+            match state.mode {
+                Mode::Ready | Mode::Following | Mode::ProtectiveStop => return Ok(()),
+                Mode::Disarmed if !asked => {
+                    self.post("home").await?;
+                    asked = true;
+                }
+                Mode::Disarmed | Mode::Homing if Instant::now() < deadline => {
+                    tokio::time::sleep(BETWEEN_TRIES).await
+                }
+                mode => {
+                    let why =
+                        state.stop.map(|stop| format!("{}: {}", stop.rule, stop.reason)).unwrap_or_default();
+                    bail!("the machine does not get ready by itself: {mode:?} {why}");
+                }
+            }
+        }
+    }
+
+    /// Arm the machine.
+    pub async fn arm(&self) -> anyhow::Result<()> {
+        match self.state().await?.mode {
+            Mode::Following | Mode::ProtectiveStop => Ok(()),
+            _ => self.post("arm").await,
+        }
+    }
+
+    /// Store a scene and activate it.
+    pub async fn show_scene(&self, scene: &SceneDocument, author: &str) -> anyhow::Result<()> {
+        let request = self.http.post(format!("{}/api/v1/scenes", self.base)).header("X-Covr-Author", author);
+        let stored: SceneStored = good(request.json(scene).send().await?).await?.json().await?;
+        let activate = format!("{}/api/v1/scenes/{}/activate", self.base, stored.id);
+        good(self.http.put(activate).header("X-Covr-Author", author).send().await?).await?;
+        tracing::info!(scene = scene.name, id = stored.id, "scene activated");
+        Ok(())
+    }
+
+    /// The machine's name, as the server tells its dashboards.
+    async fn machine(&self) -> anyhow::Result<String> {
+        let (mut socket, _) =
+            tokio_tungstenite::connect_async(format!("{}/ws/v1/dashboard", self.sockets)).await?;
+        let first = tokio::time::timeout(LONGEST_CALL, socket.next())
+            .await?
+            .context("the dashboard socket closed")??;
+        match serde_json::from_str(first.to_text()?)? {
+            ToDashboard::Welcome { machine, .. } => Ok(machine),
+            _ => bail!("the dashboard socket did not begin with a welcome"),
+        }
+    }
+
+    async fn state(&self) -> anyhow::Result<Snapshot> {
+        Ok(good(self.http.get(format!("{}/api/v1/state", self.base)).send().await?).await?.json().await?)
+    }
+
+    async fn post(&self, request: &str) -> anyhow::Result<()> {
+        good(self.http.post(format!("{}/api/v1/{request}", self.base)).send().await?)
+            .await
+            .with_context(|| request.to_owned())?;
+        tracing::info!("{request}");
+        Ok(())
+    }
+}
+
+/// The answer, or the server's own words why not.
+async fn good(response: Response) -> anyhow::Result<Response> {
+    if response.status().is_success() {
+        return Ok(response);
+    }
+    let status = response.status();
+    match response.json::<Problem>().await {
+        Ok(problem) => bail!("{}: {}", problem.title, problem.detail),
+        Err(_) => bail!("the server answered {status}"),
+    }
+}
+
+const LONGEST_CALL: Duration = Duration::from_secs(10);
+const LONGEST_HOMING: Duration = Duration::from_secs(120);
+const BETWEEN_TRIES: Duration = Duration::from_millis(200);

@@ -1,0 +1,336 @@
+//! One connected client: what it has said so far, and what each next message does.
+//!
+//! A refused message changes nothing. When a guest goes, its persons stay: nobody has said that they left.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+use covr_engine::frames::RigidMap;
+use covr_engine::observation::{Observation, PersonId, PoseSample};
+use covr_engine::safety::parameters::Parameters;
+use covr_engine::time::{Span, Time};
+use covr_wire::client::{
+    AbuseGauge, ActiveScene, ClientError, ClientHello, ClientLimits, Encoding, ErrorCode, FromClient,
+    HeadPose, Sequencer, ToClient, Touch, Verdict, Welcome, decode,
+};
+use covr_wire::clock::ClientClock;
+use covr_wire::convention::ClientFrame;
+use covr_wire::dashboard::Client;
+use serde_json::json;
+
+use crate::app::App;
+use crate::clients::Seat;
+use crate::control::PoseSlot;
+use crate::persons::Entry;
+
+/// What the client is to hear.
+#[derive(Debug)]
+pub enum Reply {
+    /// A message.
+    Say(ToClient),
+    /// The answer to its hello, and how to speak to it from now on.
+    Welcome(ClientFrame, Box<Welcome>),
+    /// Why the connection is closed.
+    LastWords(ClientError),
+}
+
+/// A connected client.
+pub struct Guest {
+    app: Arc<App>,
+    encoding: Encoding,
+    seat: Seat,
+    gauge: AbuseGauge,
+    clock: ClientClock,
+    greeted: Option<Greeted>,
+    persons: BTreeMap<String, Present>,
+    poses: u64,
+    errors: u64,
+    pose_times: VecDeque<Time>,
+    next_show: Time,
+}
+
+/// Who it is.
+struct Greeted {
+    hello: ClientHello,
+    frame: ClientFrame,
+}
+
+/// A person that it speaks for.
+struct Present {
+    id: PersonId,
+    slot: PoseSlot,
+    sequencer: Sequencer,
+}
+
+impl Guest {
+    /// A client that has said nothing yet.
+    pub fn new(app: Arc<App>, encoding: Encoding, seat: Seat) -> Self {
+        let gauge = AbuseGauge::new(app.config.clients.persons_each);
+        Self {
+            app,
+            encoding,
+            seat,
+            gauge,
+            clock: ClientClock::new(),
+            greeted: None,
+            persons: BTreeMap::new(),
+            poses: 0,
+            errors: 0,
+            pose_times: VecDeque::new(),
+            next_show: Time::ZERO,
+        }
+    }
+
+    /// Take one frame in.
+    pub fn take_frame(&mut self, sent_as: Encoding, frame: &[u8], received: Time) -> Option<Reply> {
+        let done = match self.gauge.message(received) {
+            Verdict::Fine => self.understand(sent_as, frame).and_then(|message| self.take(message, received)),
+            Verdict::Warn => Err(too_many()),
+            Verdict::Close => Err(too_many().fatal()),
+        };
+        let reply = match done {
+            Ok(reply) => reply,
+            Err(error) => Some(self.refuse(error, received)),
+        };
+        if received >= self.next_show {
+            self.show(received);
+        }
+        reply
+    }
+
+    /// Nothing came for too long.
+    pub fn silent(&mut self) -> Reply {
+        let error = if self.greeted.is_some() {
+            let secs = self.app.config.clients.silence_timeout_secs;
+            ClientError::plain(ErrorCode::Malformed, format!("nothing was said for {secs} s"))
+        } else {
+            let secs = self.app.config.clients.hello_timeout_secs;
+            ClientError::plain(ErrorCode::HelloExpected, format!("no hello came within {secs} s"))
+        };
+        Reply::LastWords(error.fatal())
+    }
+
+    /// It has said who it is.
+    pub fn has_greeted(&self) -> bool {
+        self.greeted.is_some()
+    }
+
+    fn understand(&self, sent_as: Encoding, frame: &[u8]) -> Result<FromClient, ClientError> {
+        if sent_as != self.encoding {
+            let name = |encoding| match encoding {
+                Encoding::Json => "a text frame (covr.v1.json)",
+                Encoding::MessagePack => "a binary frame (covr.v1.msgpack)",
+            };
+            return Err(ClientError::at(ErrorCode::WrongFrame, "", name(sent_as), name(self.encoding)));
+        }
+        decode(self.encoding, frame)
+    }
+
+    fn take(&mut self, message: FromClient, received: Time) -> Result<Option<Reply>, ClientError> {
+        if self.greeted.is_none() && !matches!(message, FromClient::Hello(_) | FromClient::ClockPing(_)) {
+            return Err(ClientError::plain(ErrorCode::HelloExpected, "the first message must be a hello"));
+        }
+        match message {
+            FromClient::Hello(hello) => return self.greet(hello, received).map(Some),
+            FromClient::ClockPing(ping) => {
+                let pong = self.clock.ping(&ping, received, self.app.clock.now());
+                return Ok(Some(Reply::Say(ToClient::ClockPong(pong))));
+            }
+            FromClient::Pose(pose) => self.pose(&pose, received)?,
+            FromClient::Enter(who) => self.enter(&who.person)?,
+            FromClient::Leave(who) => {
+                let id = self.present(&who.person)?.id;
+                self.tell(Observation::PersonLeft(id))?;
+                self.app.persons.leave(id);
+                self.persons.remove(&who.person);
+            }
+            FromClient::OriginChanged(who) => {
+                let id = self.present(&who.person)?.id;
+                self.tell(Observation::OriginChanged(id))?;
+                let summary = format!("the tracking origin of {} changed", who.person);
+                self.record("origin_changed", summary, json!({ "person": id.0, "name": who.person }));
+            }
+            FromClient::TouchBegan(touch) => self.touch("touch_began", "touched", &touch, received)?,
+            FromClient::TouchEnded(touch) => self.touch("touch_ended", "let go of", &touch, received)?,
+            FromClient::SceneEvent(event) => {
+                let summary = format!("scene event {}", event.name);
+                self.record("scene_event", summary, json!({ "name": event.name, "detail": event.detail }));
+            }
+        }
+        Ok(None)
+    }
+
+    fn greet(&mut self, hello: ClientHello, received: Time) -> Result<Reply, ClientError> {
+        if self.greeted.is_some() {
+            return Err(ClientError::plain(ErrorCode::AlreadyGreeted, "hello was said already"));
+        }
+        let settings = &self.app.config.clients;
+        let room_from_tracking =
+            RigidMap::from_yaw(settings.tracking_yaw_rad, settings.tracking_origin_m.into());
+        let frame = ClientFrame::new(hello.convention, room_from_tracking);
+        let active = self.app.stage.active();
+        let rules = Parameters::new(self.app.config.people.v_h_mps);
+        let welcome = Welcome {
+            server_version: env!("CARGO_PKG_VERSION").into(),
+            session_id: self.app.recorder.session_id(),
+            convention: hello.convention,
+            limits: ClientLimits::new(&self.app.config.machine.limits(), rules.pose_age.secs()),
+            scene: Some(ActiveScene::new(active.id, active.version, active.document.clone(), &frame)),
+        };
+        tracing::info!(client = hello.name, convention = hello.convention.name(), "VR client connected");
+        let detail = json!({ "client": hello.name, "convention": hello.convention.name() });
+        self.record("client_connected", format!("client {} connected", hello.name), detail);
+        self.greeted = Some(Greeted { hello, frame });
+        self.show(received);
+        Ok(Reply::Welcome(frame, Box::new(welcome)))
+    }
+
+    fn enter(&mut self, person: &str) -> Result<(), ClientError> {
+        let Some(greeted) = &self.greeted else { return Ok(()) };
+        if self.persons.contains_key(person) {
+            let words = format!("{person} has entered already");
+            return Err(ClientError::plain(ErrorCode::AlreadyEntered, words));
+        }
+        let most = self.app.config.clients.persons_each;
+        if self.persons.len() >= most {
+            let words = format!("a client speaks for at most {most} persons");
+            return Err(ClientError::plain(ErrorCode::Full, words));
+        }
+        let entry = self
+            .app
+            .persons
+            .enter(&greeted.hello.name, person)
+            .map_err(|taken| ClientError::plain(ErrorCode::AlreadyEntered, taken.to_string()))?;
+        let (id, seen) = match entry {
+            Entry::New(id) => (id, Observation::PersonEntered(id)),
+            Entry::Back(id) => (id, Observation::ClientBack(id)),
+        };
+        let told = self.tell(seen).and_then(|()| self.app.control.connect_headset(id).map_err(busy));
+        match told {
+            Ok(slot) => {
+                self.persons.insert(person.to_owned(), Present { id, slot, sequencer: Sequencer::default() });
+                Ok(())
+            }
+            Err(error) => {
+                self.app.persons.disconnect(id);
+                Err(error)
+            }
+        }
+    }
+
+    fn pose(&mut self, pose: &HeadPose, received: Time) -> Result<(), ClientError> {
+        let Some(greeted) = &self.greeted else { return Ok(()) };
+        let present = self.persons.get_mut(&pose.person).ok_or_else(|| unknown_person(&pose.person))?;
+        present.sequencer.accept(pose.sequence).map_err(|wrong| {
+            let expected = format!("more than {}", wrong.last);
+            ClientError::at(ErrorCode::OutOfOrder, "sequence", wrong.found.to_string(), expected)
+        })?;
+        present.slot.put(PoseSample {
+            taken_at: self.clock.server_time(pose.client_time_micros, received),
+            pose: greeted.frame.room_pose(pose.position, pose.orientation),
+            tracked: pose.tracked,
+            worn: pose.worn,
+        });
+        self.poses += 1;
+        self.pose_times.push_back(received);
+        metrics::counter!("covr_poses_total").increment(1);
+        Ok(())
+    }
+
+    fn touch(&mut self, kind: &str, verb: &str, touch: &Touch, received: Time) -> Result<(), ClientError> {
+        let id = self.present(&touch.person)?.id;
+        if !self.app.stage.active().document.objects.iter().any(|object| object.id == touch.object) {
+            let found = format!("\"{}\"", touch.object);
+            return Err(ClientError::at(
+                ErrorCode::UnknownObject,
+                "object",
+                found,
+                "an object of the active scene",
+            ));
+        }
+        let at = self.clock.server_time(touch.client_time_micros, received);
+        let detail =
+            json!({ "person": id.0, "name": touch.person, "object": touch.object, "at_micros": at.micros() });
+        self.record(kind, format!("{} {verb} {}", touch.person, touch.object), detail);
+        Ok(())
+    }
+
+    fn refuse(&mut self, error: ClientError, received: Time) -> Reply {
+        self.errors += 1;
+        metrics::counter!("covr_client_errors_total").increment(1);
+        let closes = error.fatal || self.gauge.error(received) == Verdict::Close;
+        // The first error is recorded, and the one that ends it; those between are counted.
+        if self.errors == 1 || closes {
+            let summary = format!("client {}: {}", self.name(), error.message);
+            let detail = json!({ "client": self.name(), "code": error.code, "field": error.field,
+                "message": error.message, "errors": self.errors, "closed": closes });
+            self.record("client_error", summary, detail);
+        }
+        if closes { Reply::LastWords(error.fatal()) } else { Reply::Say(ToClient::Error(error)) }
+    }
+
+    fn show(&mut self, now: Time) {
+        let Some(greeted) = &self.greeted else { return };
+        self.next_show = now + SHOW_EVERY;
+        while self.pose_times.front().is_some_and(|oldest| now - *oldest > Span::from_millis(1_000)) {
+            self.pose_times.pop_front();
+        }
+        self.seat.show(Client {
+            name: greeted.hello.name.clone(),
+            convention: greeted.hello.convention.name().into(),
+            poses: self.poses,
+            pose_rate_hz: self.pose_times.len() as f64,
+            rtt_millis: self.clock.rtt().map(|rtt| rtt.secs() * 1e3),
+            errors: self.errors,
+        });
+    }
+
+    fn present(&self, person: &str) -> Result<&Present, ClientError> {
+        self.persons.get(person).ok_or_else(|| unknown_person(person))
+    }
+
+    fn tell(&self, observation: Observation) -> Result<(), ClientError> {
+        self.app.control.tell(observation).map_err(busy)
+    }
+
+    fn record(&self, kind: &str, summary: String, detail: serde_json::Value) {
+        self.app.recorder.record(kind, summary, detail);
+    }
+
+    fn name(&self) -> &str {
+        self.greeted.as_ref().map_or("without a hello", |greeted| &greeted.hello.name)
+    }
+}
+
+impl Drop for Guest {
+    fn drop(&mut self) {
+        for (name, present) in &self.persons {
+            self.app.persons.disconnect(present.id);
+            if let Err(error) = self.app.control.tell(Observation::ClientGone(present.id)) {
+                // Its poses age all the same, which stops the machine as well (R2).
+                tracing::error!(%error, person = name, "the control loop was not told of a lost client");
+            }
+        }
+        if let Some(greeted) = &self.greeted {
+            let client = &greeted.hello.name;
+            let left_behind: Vec<&String> = self.persons.keys().collect();
+            tracing::info!(client, ?left_behind, "VR client gone");
+            let detail = json!({ "client": client, "persons": left_behind, "poses": self.poses, "errors": self.errors });
+            self.record("client_gone", format!("client {client} is gone"), detail);
+        }
+    }
+}
+
+fn unknown_person(person: &str) -> ClientError {
+    ClientError::at(ErrorCode::UnknownPerson, "person", format!("\"{person}\""), "a person who has entered")
+}
+
+fn too_many() -> ClientError {
+    ClientError::plain(ErrorCode::TooManyMessages, "more messages than the protocol allows")
+}
+
+fn busy(error: crate::control::NotDelivered) -> ClientError {
+    ClientError::plain(ErrorCode::Full, error.to_string())
+}
+
+const SHOW_EVERY: Span = Span::from_millis(250);

@@ -1,0 +1,178 @@
+//! `/ws/v1/dashboard`: whole snapshots to those who keep up, every event to those who do not fall behind.
+//!
+//! A slow reader skips snapshots. One that falls behind with events is disconnected, and starts afresh from a
+//! whole snapshot: nothing is ever patched.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use axum::extract::State;
+use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade, close_code};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use covr_engine::mode::RequestKind;
+use covr_engine::observation::PersonId;
+use covr_engine::{Answer, Outcome};
+use covr_wire::dashboard::{FromDashboard, MachineRequest, MachineShape, Snapshot, ToDashboard};
+use futures_util::StreamExt;
+use futures_util::stream::{SplitSink, SplitStream};
+use tokio::sync::broadcast::error::RecvError;
+use tokio::sync::{OwnedSemaphorePermit, mpsc};
+
+use super::{Gone, close, send, why_closing};
+use crate::app::{App, Asker};
+use crate::control::StopLaneName;
+use crate::live::wire_snapshot;
+
+/// Accept a dashboard.
+pub async fn upgrade(State(app): State<Arc<App>>, upgrade: WebSocketUpgrade) -> Response {
+    let Ok(seat) = app.dashboard_seats.clone().try_acquire_owned() else {
+        let why = "as many dashboards as the server takes are connected";
+        return (StatusCode::SERVICE_UNAVAILABLE, why).into_response();
+    };
+    upgrade.max_message_size(MOST_MESSAGE_BYTES).on_upgrade(move |socket| serve(app, socket, seat))
+}
+
+async fn serve(app: Arc<App>, socket: WebSocket, _seat: OwnedSemaphorePermit) {
+    let (sink, stream) = socket.split();
+    let (answers, answers_out) = mpsc::channel(ANSWER_QUEUE);
+    tokio::select! {
+        _ = write(app.clone(), sink, answers_out) => {}
+        () = read(app, stream, answers) => {}
+    }
+}
+
+/// Answers first, then events, then the newest snapshot.
+async fn write(
+    app: Arc<App>,
+    mut sink: SplitSink<WebSocket, Message>,
+    mut answers: mpsc::Receiver<ToDashboard>,
+) -> Result<(), Gone> {
+    let mut events = app.recorder.live();
+    let mut frames = app.frames.clone();
+    let mut stage = app.stage.watch();
+    let mut closing = app.closing.clone();
+    say(&mut sink, &welcome(&app)).await?;
+    say(&mut sink, &scene(&app)).await?;
+    stage.mark_unchanged();
+    let first: Snapshot = wire_snapshot(&app, &app.control.published());
+    say(&mut sink, &ToDashboard::Snapshot(Box::new(first))).await?;
+    loop {
+        tokio::select! {
+            biased;
+            reason = why_closing(&mut closing) => {
+                return close(&mut sink, close_code::AWAY, &reason).await;
+            }
+            Some(answer) = answers.recv() => say(&mut sink, &answer).await?,
+            Ok(()) = stage.changed() => say(&mut sink, &scene(&app)).await?,
+            event = events.recv() => match event {
+                Ok(event) => say(&mut sink, &ToDashboard::Event((*event).clone())).await?,
+                Err(RecvError::Lagged(missed)) => {
+                    let reason = format!("{missed} events behind; connect again");
+                    return close(&mut sink, close_code::AGAIN, &reason).await;
+                }
+                Err(RecvError::Closed) => return Ok(()),
+            },
+            Ok(()) = frames.changed() => {
+                let text = frames.borrow_and_update().to_string();
+                send(&mut sink, Message::Text(text.into())).await?;
+            }
+        }
+    }
+}
+
+/// A stop waits for nothing that came before it: each message is handled on a task of its own.
+async fn read(app: Arc<App>, mut stream: SplitStream<WebSocket>, answers: mpsc::Sender<ToDashboard>) {
+    while let Some(Ok(message)) = stream.next().await {
+        let received_at = Instant::now();
+        let text = match message {
+            Message::Text(text) => text.to_string(),
+            Message::Binary(_) => "\"a binary frame\"".into(),
+            Message::Ping(_) | Message::Pong(_) => continue,
+            Message::Close(_) => return,
+        };
+        let (app, answers) = (app.clone(), answers.clone());
+        tokio::spawn(async move {
+            let answer = answer(&app, &text, received_at).await;
+            // The connection may have gone meanwhile; then nobody waits for this.
+            let _ = answers.send(answer).await;
+        });
+    }
+}
+
+async fn answer(app: &App, text: &str, received_at: Instant) -> ToDashboard {
+    let asker = Asker { by: "dashboard", author: "dashboard".into() };
+    match serde_json::from_str(text) {
+        Ok(FromDashboard::Stop { request_id, reason }) => {
+            match app.stop(&asker, StopLaneName::Dashboard, given(reason), received_at).await {
+                Ok(to_drive) => {
+                    let answer = Answer { outcome: Outcome::Accepted, detail: "stopped".into() };
+                    ToDashboard::answer(request_id, answer, Some(to_drive.as_micros() as u64))
+                }
+                Err(why) => refused(request_id, why.to_string()),
+            }
+        }
+        Ok(FromDashboard::Request { request_id, request, reason }) => {
+            match ask(app, &asker, request, given(reason)).await {
+                Ok(answer) => ToDashboard::answer(request_id, answer, None),
+                Err(why) => refused(request_id, why),
+            }
+        }
+        Err(error) => {
+            // Answer the request that was meant, where it can be told.
+            let meant = serde_json::from_str::<serde_json::Value>(text).ok();
+            let id = meant.and_then(|m| m.get("request_id")?.as_u64()).and_then(|id| u32::try_from(id).ok());
+            refused(id.unwrap_or(0), format!("not understood: {error}"))
+        }
+    }
+}
+
+async fn ask(
+    app: &App,
+    asker: &Asker,
+    request: MachineRequest,
+    reason: Option<String>,
+) -> Result<Answer, String> {
+    let done = match request {
+        MachineRequest::Home => app.request(asker, RequestKind::Home, reason).await,
+        MachineRequest::Arm => app.request(asker, RequestKind::Arm, reason).await,
+        MachineRequest::Disarm => app.request(asker, RequestKind::Disarm, reason).await,
+        MachineRequest::Reset if reason.is_none() => return Err("a reset needs a reason".into()),
+        MachineRequest::Reset => app.request(asker, RequestKind::Reset, reason).await,
+        MachineRequest::ConfirmOrigin(person) if app.persons.is_inside(PersonId(person)) => {
+            app.confirm_origin(asker, PersonId(person)).await
+        }
+        MachineRequest::ConfirmOrigin(person) => return Err(format!("person {person} is not in the arena")),
+    };
+    done.map_err(|why| why.to_string())
+}
+
+fn refused(request_id: u32, detail: String) -> ToDashboard {
+    ToDashboard::answer(request_id, Answer { outcome: Outcome::Refused, detail }, None)
+}
+
+fn given(reason: Option<String>) -> Option<String> {
+    reason.map(|words| words.trim().to_owned()).filter(|words| !words.is_empty())
+}
+
+fn welcome(app: &App) -> ToDashboard {
+    let machine = &app.config.machine;
+    ToDashboard::Welcome {
+        version: env!("CARGO_PKG_VERSION").into(),
+        machine: machine.kind.name().into(),
+        machine_shape: MachineShape::new(&machine.travel(), &machine.limits()),
+    }
+}
+
+fn scene(app: &App) -> ToDashboard {
+    let active = app.stage.active();
+    ToDashboard::Scene { id: active.id, version: active.version, scene: active.document.clone() }
+}
+
+async fn say(sink: &mut SplitSink<WebSocket, Message>, message: &ToDashboard) -> Result<(), Gone> {
+    let text = serde_json::to_string(message).map_err(|_| Gone)?;
+    send(sink, Message::Text(text.into())).await
+}
+
+const MOST_MESSAGE_BYTES: usize = 64 * 1024;
+const ANSWER_QUEUE: usize = 64;
