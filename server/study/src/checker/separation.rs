@@ -4,7 +4,8 @@
 //! and faster than that 0.35 m still; 1 m while the head is lower than 1 m, also near an object. Keep-outs: 0.35 m, v_h 0.
 //!
 //! Allowances, all of one reaction and one braking: r grew (what held with the r before must still hold), somebody
-//! appeared, a person was faster than v_h, a person overtook a legal retreat. Once the reaction is over the column's
+//! appeared, a person was faster than v_h, d began to fall under a motion that
+//! is a retreat in all else (a person came after it). Once the reaction is over the column's
 //! speed must not rise while it uses one of them. The last two are counted apart.
 
 mod braking;
@@ -71,7 +72,8 @@ struct Watched {
     head: Option<Floor>,
     speed_mps: f64,
     distance_m: f64,
-    retreating: bool,
+    /// Since when d has been falling, tick by tick.
+    falling_since: Option<Time>,
     graces: Vec<Grace>,
 }
 
@@ -139,7 +141,6 @@ impl SeparationWatch {
         let mut found = Vec::with_capacity(sightings.len());
         for (sighting, standing) in sightings.into_iter().zip(standings) {
             let Some(watched) = self.watched.get_mut(&sighting.subject) else { continue };
-            watched.retreating = standing == Standing::Retreating;
             watched.distance_m = sighting.gap.distance_m;
             found.push(Found {
                 subject: sighting.subject,
@@ -196,13 +197,18 @@ impl SeparationWatch {
                 head: sighting.head,
                 speed_mps: 0.0,
                 distance_m: sighting.gap.distance_m,
-                retreating: false,
+                falling_since: None,
                 graces: vec![grace(Reason::Appeared)],
             };
             self.watched.insert(sighting.subject, watched);
             return;
         };
         watched.graces.retain(|grace| scales.at <= grace.until);
+        let falls = sighting.gap.distance_m < watched.distance_m - FALLING_M;
+        if falls && watched.falling_since.is_none() {
+            watched.graces.push(grace(Reason::OvertakenRetreat));
+        }
+        watched.falling_since = if falls { watched.falling_since.or(Some(scales.at)) } else { None };
         watched.at_object = at_object(watched.at_object);
         let zone = zone_of(watched.at_object);
         if zone > watched.zone {
@@ -268,13 +274,8 @@ impl SeparationWatch {
         if moment.latched || !goes_away || !slow {
             return standing.clone();
         }
-        if distance_m >= RETREAT_LEAST_M && distance_m >= watched.distance_m - FALLING_M {
+        if distance_m >= RETREAT_LEAST_M && watched.falling_since.is_none() {
             return Standing::Retreating;
-        }
-        if watched.retreating {
-            let until = scales.at + scales.allowance;
-            let reason = Reason::OvertakenRetreat;
-            watched.graces.push(Grace { reason, onset: scales.at, until, lowest_mps: None });
         }
         let mut overtaken =
             watched.graces.iter_mut().filter(|grace| grace.reason == Reason::OvertakenRetreat);
