@@ -21,6 +21,7 @@ use crate::safety::separation::{Separation, Threat};
 use crate::safety::supervisor::{Demand, Supervisor, Watched, clears_when};
 use crate::safety::vetted::Vetted;
 use crate::scene::Scene;
+use crate::scene::footprint::KeepOut;
 use crate::snapshot::{RuleId, StopCause};
 use crate::time::{Span, Time};
 use following::Following;
@@ -186,6 +187,9 @@ impl Engine {
 
     /// Decide what the machine does until the next step.
     pub fn step(&mut self, now: Time) -> Vetted {
+        for person in &mut self.persons {
+            person.update_zones(now, &self.parameters);
+        }
         self.threats.clear();
         self.threats.extend(self.persons.iter().filter_map(|p| p.threat(now)));
         self.supervise(now);
@@ -406,11 +410,22 @@ impl Engine {
         if self.mode == Mode::Homing {
             return refused("homing: wait until it is done".to_owned());
         }
+        if let Some(report) = self.report.filter(|r| r.homing == Homing::Homed) {
+            // Inside a keep-out's distance nothing may move, so the column would be shut in.
+            let shuts_in =
+                |k: &KeepOut| k.distance_m(scene.footprint(), report.position) < self.parameters.radius_m;
+            if let Some(index) = scene.keep_outs().iter().position(shuts_in) {
+                let (id, r) = (&scene.spec().keep_outs[index].id, self.parameters.radius_m);
+                return refused(format!(
+                    "the column stands within {r} m of the keep-out shape \"{id}\": move it away first"
+                ));
+            }
+        }
         self.priors = scene.spec().objects.iter().map(|o| o.prior).collect();
         self.scene = scene;
         self.following.forget_visitors();
         for person in &mut self.persons {
-            person.place_among(&self.scene, &self.parameters);
+            person.place_among(&self.scene);
         }
         Answer { outcome: Outcome::Accepted, detail: "scene activated".to_owned() }
     }

@@ -78,17 +78,23 @@ impl Person {
             self.implausible_until = None;
         }
         self.newest = Some(sample);
-        self.place_among(scene, parameters);
+        self.place_among(scene);
     }
 
-    /// Work out the zones of the separation rule anew: after a pose, and after a change of scene.
-    pub fn place_among(&mut self, scene: &Scene, parameters: &Parameters) {
-        let Some(sample) = self.newest else { return };
-        let head = sample.pose.position;
-        let nearest = scene.nearest_enabled_object_m(&head);
-        self.near_object =
-            nearest <= if self.near_object { parameters.near_leave_m } else { parameters.near_enter_m };
-        self.low = head.z() < parameters.low_head_m;
+    /// Find the nearest object anew: after a pose, and after a change of scene.
+    pub fn place_among(&mut self, scene: &Scene) {
+        if let Some(sample) = self.newest {
+            self.nearest_object_m = scene.nearest_enabled_object_m(&sample.pose.position);
+        }
+    }
+
+    /// Work out the zones of the separation rule for now. The pose is old, and since then the head may have left an
+    /// object at v_h or gone down in a crouch: what would make the rule stricter is taken to have happened.
+    pub fn update_zones(&mut self, now: Time, parameters: &Parameters) {
+        let (Some(sample), Some(age)) = (self.newest, self.pose_age(now)) else { return };
+        let limit = if self.near_object { parameters.near_leave_m } else { parameters.near_enter_m };
+        self.near_object = self.nearest_object_m + parameters.v_h_mps * age.secs() <= limit;
+        self.low = sample.pose.position.z() - parameters.stoop_mps * age.secs() < parameters.low_head_m;
     }
 
     /// The tracking origin moved: nobody knows where this person is until a game master confirms.
@@ -249,9 +255,30 @@ mod tests {
 
     #[test]
     fn near_an_object_has_hysteresis() {
-        let near = |person: &Person| person.threat(Time::from_micros(100_000)).unwrap().near_object;
-        assert!(!near(&fed(&[sample(0, 1.9, true)])), "0.8 m is not near on the way in");
-        assert!(near(&fed(&[sample(0, 1.8, true), sample(50, 1.9, true)])), "but near on the way out");
-        assert!(!near(&fed(&[sample(0, 1.8, true), sample(50, 1.96, true)])));
+        let near = |samples: &[PoseSample]| {
+            let mut person = Person::new(PersonId(1));
+            for s in samples {
+                person.take_pose(*s, &scene(), &Parameters::new(1.6));
+                person.update_zones(s.taken_at, &Parameters::new(1.6));
+            }
+            person.threat(Time::from_micros(100_000)).unwrap().near_object
+        };
+        assert!(!near(&[sample(0, 1.9, true)]), "0.8 m is not near on the way in");
+        assert!(near(&[sample(0, 1.8, true), sample(50, 1.9, true)]), "but near on the way out");
+        assert!(!near(&[sample(0, 1.8, true), sample(50, 1.96, true)]));
+    }
+
+    #[test]
+    fn an_old_pose_may_have_left_the_object_or_crouched() {
+        let parameters = Parameters::new(1.6);
+        let mut person = fed(&[sample(0, 1.8, true)]);
+        let mut zones = |millis: i64| {
+            person.update_zones(Time::from_micros(millis * 1000), &parameters);
+            let threat = person.threat(Time::from_micros(millis * 1000)).unwrap();
+            (threat.near_object, threat.low)
+        };
+        assert_eq!(zones(20), (true, false));
+        assert_eq!(zones(200), (false, false), "0.7 m and 0.32 m of walking");
+        assert_eq!(zones(400), (false, true), "1.6 m less 0.72 m of crouching");
     }
 }

@@ -25,11 +25,14 @@ pub struct Parameters {
     pub low_radius_m: f64,
     /// R3: a head below this is low, m.
     pub low_head_m: f64,
+    /// R3: a head goes down no faster than this, m/s: a quick crouch, with a margin.
+    pub stoop_mps: f64,
     /// R3: from a decision to its effect on the machine, T_r.
     pub reaction: Span,
     /// R3: greatest speed of a retreat, m/s; the rule's 0.3 less what a machine may overshoot.
     pub retreat_speed_mps: f64,
-    /// R3: half the cone of a retreat about "directly away"; the rule's 60 degrees less a margin, rad.
+    /// R3: half the cone of a retreat about "directly away", rad. Braking per axis turns the velocity by up to 45
+    /// degrees while it dies, and the rule's cone is 60 degrees.
     pub retreat_cone_rad: f64,
     /// R3: what the commanded path keeps beyond the rule, for the following error of a healthy machine, m.
     pub following_allowance_m: f64,
@@ -71,9 +74,10 @@ impl Parameters {
             near_leave_m: 0.85,
             low_radius_m: 1.0,
             low_head_m: 1.0,
+            stoop_mps: 1.8,
             reaction: Span::from_millis(50),
             retreat_speed_mps: 0.25,
-            retreat_cone_rad: 50.0_f64.to_radians(),
+            retreat_cone_rad: 12.0_f64.to_radians(),
             following_allowance_m: 0.015,
             current_amps: 5.0,
             current_for: Span::from_millis(20),

@@ -65,7 +65,7 @@ pub struct Separation<'a> {
     pub limits: &'a Limits,
     /// The machine's travel.
     pub travel: &'a Travel,
-    /// Everybody.
+    /// Everybody whose place is known.
     pub threats: &'a [Threat],
     /// The rule's numbers.
     pub parameters: &'a Parameters,
@@ -77,7 +77,10 @@ impl Separation<'_> {
         let path = BrakePath::worst(state, self.limits, self.parameters.reaction.secs());
         self.certify_travel(state, &path)?;
         let speed = state.velocity().norm() + MACHINE_OVERSHOOT_MPS;
-        self.certify_path(state, &path, speed, self.parameters.following_allowance_m)
+        let allowance_m = self.parameters.following_allowance_m;
+        self.certify_path(state, &path, speed, allowance_m)?;
+        // The brake begun at once takes another curve, as its axes come to rest at other times.
+        self.certify_path(state, &BrakePath::now(state, self.limits), speed, allowance_m)
     }
 
     /// Allow the measured state: the plain rule, braking begun now.
@@ -148,8 +151,10 @@ impl Separation<'_> {
             let distance = |c: Floor| keep_out.distance_m(self.scene.footprint(), c);
             let required = |_| self.parameters.radius_m + allowance_m;
             let leaves = || {
-                let away = keep_out.away(self.scene.footprint(), state.position());
-                away.is_some_and(|away| self.is_retreat(velocity, away))
+                let (footprint, centre) = (self.scene.footprint(), state.position());
+                let outside = keep_out.distance_m(footprint, centre) > self.parameters.radius_m;
+                outside
+                    && keep_out.away(footprint, centre).is_some_and(|away| self.is_retreat(velocity, away))
             };
             if let Err((distance_m, required_m)) = keeps(path, 0.0, distance, required)
                 && !leaves()
@@ -160,16 +165,15 @@ impl Separation<'_> {
         Ok(())
     }
 
-    /// The column moves away from this person, slowly, and they do not come after it faster than it leaves.
+    /// The column moves straight away from this person, slowly, and they do not come after it.
     fn retreats(&self, state: &State, threat: &Threat) -> bool {
         let centre = state.position();
         let footprint = self.scene.footprint();
         let Some(away) = footprint.away_from(centre, threat.head) else { return false };
         let Some(from_head) = (centre - threat.head).unit() else { return false };
         let velocity = state.velocity();
-        let gains = velocity.dot(away) >= threat.velocity.dot(away).max(0.0);
-        footprint.distance_m(centre, threat.head) > self.parameters.radius_m + RETREAT_MARGIN_M
-            && gains
+        footprint.distance_m(centre, threat.head) > self.radius_m(threat, f64::INFINITY) + RETREAT_MARGIN_M
+            && threat.velocity.norm() < STANDS_MPS
             && self.is_retreat(velocity, away)
             && self.is_retreat(velocity, from_head)
     }
@@ -217,5 +221,7 @@ const AT_REST_MPS: f64 = 1e-6;
 const LEAST_STEP_SECS: f64 = 2.5e-4;
 /// Floating point on a path that ends on the margin, m.
 const ROUNDING_M: f64 = 1e-9;
+/// Who moves more slowly stands, as far as poses tell, m/s.
+const STANDS_MPS: f64 = 0.1;
 /// A retreat begins this far outside the rule's 0.35 m, m.
 const RETREAT_MARGIN_M: f64 = 0.03;
