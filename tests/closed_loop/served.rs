@@ -3,11 +3,10 @@
 use std::sync::Arc;
 
 use covr_engine::EngineConfig;
-use covr_engine::frames::{Floor, Point};
+use covr_engine::frames::Floor;
 use covr_engine::intention::RuleName;
-use covr_engine::machine::Travel;
 use covr_engine::observation::{Observation, PersonId, PoseSample};
-use covr_engine::scene::{ObjectSpec, Scene, SceneSpec, Shape};
+use covr_engine::scene::Scene;
 use covr_engine::time::{Span, Time};
 use covr_gantry::contract::Gantry;
 use covr_gantry::sim::SimulatedMachine;
@@ -16,20 +15,10 @@ use covr_study::random::Random;
 use covr_study::replay::{ClosedLoop, LinkProfile, TrueHead};
 use covr_study::visitor::{Phase, Visitor};
 
-/// Three objects about the paper's arena.
+/// The scene that `make run` shows.
 fn demo_scene() -> Scene {
-    let arena = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
-    let places = [("lamp", 0.8, 0.9), ("door", 3.2, 1.0), ("broom", 2.0, 3.2)];
-    let objects = places.map(|(id, x, y)| ObjectSpec {
-        id: id.into(),
-        position: Point::new(x, y, 1.2),
-        yaw_rad: 0.0,
-        shape: Shape::Sphere { radius_m: 0.1 },
-        prop: None,
-        prior: 1.0,
-        enabled: true,
-    });
-    Scene::build(SceneSpec::open(arena, objects.to_vec())).expect("the demo scene is right")
+    let document = include_bytes!("../../deploy/scenes/demo.json");
+    covr_wire::scene::parse_scene(document).expect("the demo scene is right").1
 }
 
 #[test]
@@ -42,7 +31,7 @@ fn the_column_is_there_before_the_hand_in_at_least_half_of_the_reaches() {
         limits: machine.limits(),
         travel: arena,
         period: Span::from_millis(4),
-        intention_rule: RuleName::Paper,
+        intention_rule: RuleName::PaperBest,
         v_h_mps: 1.6,
         latched_because: None,
     };

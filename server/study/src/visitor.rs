@@ -163,7 +163,7 @@ impl Visitor {
             Phase::Searches => {
                 self.choose_goal();
                 self.gaze_until = at;
-                self.random.between(2.0, 4.0)
+                self.random.between(1.0, 3.0) + KNOWS_BEFORE_SECS
             }
             Phase::Walks => self.set_out(at),
             Phase::Reaches => self.random.between(0.2, 0.5),
@@ -253,7 +253,9 @@ impl Visitor {
     /// Turn the head towards what the eyes are on, as fast as heads turn.
     fn look(&mut self, head: Point<Room>, at: Time) {
         if self.phase == Phase::Searches && at >= self.gaze_until {
-            self.gaze = self.next_glance();
+            let knows = (self.phase_ends - at).secs() <= KNOWS_BEFORE_SECS;
+            let goal = self.goal.filter(|_| knows).map(|goal| Gaze::At(goal.position));
+            self.gaze = goal.unwrap_or_else(|| self.next_glance());
             self.gaze_until = at + Span::from_secs(self.random.between(0.25, 0.6));
         }
         let (yaw_rad, pitch_rad) = match self.gaze {
@@ -297,6 +299,9 @@ impl Iterator for Visitor {
     }
 }
 
+/// Whoever has found the goal keeps it in view for so long before setting out, s (jov2023: 2 s from the end of the
+/// preview to the response).
+const KNOWS_BEFORE_SECS: f64 = 2.0;
 /// How far from an object's centre the head stops, m (jov2023: median 0.6 m at the reach).
 const STOPS_AT_M: f64 = 0.6;
 /// How far from the middle of the room the visitor reads, m (jov2023: trials start within 0.3 m of it).

@@ -225,3 +225,116 @@ const ROUNDING_M: f64 = 1e-9;
 const STANDS_MPS: f64 = 0.1;
 /// A retreat begins this far outside the rule's 0.35 m, m.
 const RETREAT_MARGIN_M: f64 = 0.03;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frames::Point;
+    use crate::scene::{KeepOutShape, KeepOutSpec, ObjectSpec, SceneSpec, Shape};
+
+    const TRAVEL: Travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
+
+    fn scene() -> Scene {
+        let ball = ObjectSpec {
+            id: "ball".into(),
+            position: Point::new(0.5, 0.5, 1.0),
+            yaw_rad: 0.0,
+            shape: Shape::Sphere { radius_m: 0.1 },
+            prop: None,
+            prior: 1.0,
+            enabled: true,
+        };
+        let mut spec = SceneSpec::open(TRAVEL, vec![ball]);
+        let shape = KeepOutShape::Circle { centre: Floor::new(0.5, 3.5), radius_m: 0.3 };
+        spec.keep_outs.push(KeepOutSpec { id: "sofa".into(), shape });
+        Scene::build(spec).unwrap()
+    }
+
+    /// A column at (2, 2) with this velocity, and a head this far along +x from the footprint.
+    fn verdict(velocity: Planar, gap_m: f64, alter: impl FnOnce(&mut Threat)) -> Result<(), Conflict> {
+        let mut threat = Threat {
+            person: PersonId(1),
+            head: Floor::new(2.075 + gap_m, 2.0),
+            velocity: Planar::ZERO,
+            age_secs: 0.02,
+            near_object: false,
+            low: false,
+        };
+        alter(&mut threat);
+        certified(&State::moving(Floor::new(2.0, 2.0), velocity), &[threat])
+    }
+
+    fn certified(state: &State, threats: &[Threat]) -> Result<(), Conflict> {
+        let (scene, parameters) = (scene(), Parameters::new(1.6));
+        Separation {
+            scene: &scene,
+            limits: &Limits::PAPER,
+            travel: &TRAVEL,
+            threats,
+            parameters: &parameters,
+        }
+        .certify(state)
+    }
+
+    #[test]
+    fn at_rest_everything_is_allowed() {
+        for gap_m in [0.0, 0.1, 0.34] {
+            assert_eq!(verdict(Planar::ZERO, gap_m, |_| ()), Ok(()));
+        }
+    }
+
+    #[test]
+    fn towards_somebody_it_needs_what_walking_and_braking_take() {
+        // From 1.1 m/s: reaction 0.05 s and a brake of 1.1 / 2.5 + 2.5 / 60 s, 20 ms of age, 1.6 m/s of walking.
+        let brake_secs = 0.05 + 1.1 / 2.5 + 2.5 / 60.0;
+        let braking_m = 1.1 * 0.05 + 1.1 * (1.1 / 2.5 + 2.5 / 60.0) / 2.0;
+        let needed = 0.35 + 1.6 * (brake_secs + 0.02) + braking_m + 0.015;
+        assert!(verdict(Planar::new(1.1, 0.0), needed + 0.01, |_| ()).is_ok());
+        let conflict = verdict(Planar::new(1.1, 0.0), needed - 0.01, |_| ()).unwrap_err();
+        assert_eq!(conflict.with, Obstacle::Person(PersonId(1)));
+    }
+
+    #[test]
+    fn away_from_somebody_it_may_where_towards_it_may_not() {
+        assert!(verdict(Planar::new(-0.8, 0.0), 1.1, |_| ()).is_ok());
+        assert!(verdict(Planar::new(0.8, 0.0), 1.1, |_| ()).is_err());
+    }
+
+    #[test]
+    fn an_older_pose_asks_for_more() {
+        assert!(verdict(Planar::new(0.5, 0.0), 1.1, |_| ()).is_ok());
+        assert!(verdict(Planar::new(0.5, 0.0), 1.1, |t| t.age_secs = 0.3).is_err());
+    }
+
+    #[test]
+    fn near_an_object_it_may_creep_closer_and_at_a_low_head_it_must_stay_away() {
+        let creep = Planar::new(0.0, 0.15);
+        assert!(verdict(creep, 0.65, |_| ()).is_err());
+        assert!(verdict(creep, 0.65, |t| t.near_object = true).is_ok());
+        assert!(verdict(Planar::new(0.0, 0.3), 0.65, |t| t.near_object = true).is_err(), "but not faster");
+        assert!(verdict(creep, 1.0, |_| ()).is_ok());
+        assert!(verdict(creep, 1.0, |t| t.low = true).is_err());
+    }
+
+    #[test]
+    fn it_may_retreat_slowly_straight_and_from_somebody_who_stands() {
+        let back = Planar::new(-0.2, 0.0);
+        assert!(verdict(back, 0.40, |_| ()).is_ok());
+        assert!(verdict(back, 0.36, |_| ()).is_err(), "too close");
+        assert!(verdict(back * 1.6, 0.40, |_| ()).is_err(), "too fast");
+        assert!(verdict(back.turned(0.5), 0.40, |_| ()).is_err(), "aside");
+        assert!(verdict(back, 0.40, |t| t.velocity = Planar::new(-0.4, 0.0)).is_err(), "they come after it");
+    }
+
+    #[test]
+    fn the_travel_and_a_keep_out_are_kept_braking_included() {
+        let at = |x, y, vx, vy| certified(&State::moving(Floor::new(x, y), Planar::new(vx, vy)), &[]);
+        assert!(at(3.6, 2.0, 0.8, 0.0).is_ok());
+        assert_eq!(at(3.8, 2.0, 0.8, 0.0).unwrap_err().with, Obstacle::Travel);
+        assert!(at(3.99, 2.0, -0.3, 0.0).is_ok(), "from outside the margin inwards");
+        assert_eq!(at(3.99, 2.0, 0.01, 0.0).unwrap_err().with, Obstacle::Travel);
+        assert!(at(2.0, 3.5, -0.8, 0.0).is_ok());
+        assert_eq!(at(1.35, 3.5, -0.8, 0.0).unwrap_err().with, Obstacle::KeepOut(0));
+        assert!(at(1.35, 3.5, 0.0, -0.8).is_ok(), "past it");
+    }
+}
