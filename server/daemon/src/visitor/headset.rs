@@ -15,7 +15,7 @@ use tokio::net::TcpStream;
 use tokio_tungstenite::tungstenite::Message;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::http::header::SEC_WEBSOCKET_PROTOCOL;
-use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
+use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async_with_config};
 
 /// The connection was lost.
 #[derive(Debug, thiserror::Error)]
@@ -39,7 +39,9 @@ impl Headset {
     pub async fn connect(url: &str, name: &str) -> anyhow::Result<Self> {
         let mut request = format!("{}/ws/v1/client", url.trim_end_matches('/')).into_client_request()?;
         request.headers_mut().insert(SEC_WEBSOCKET_PROTOCOL, JSON_SUBPROTOCOL.parse()?);
-        let (socket, _) = connect_async(request).await.map_err(|why| Lost(why.to_string()))?;
+        // Without Nagle's delay: a pose that waits for the one before is old.
+        let connected = connect_async_with_config(request, None, true).await;
+        let (socket, _) = connected.map_err(|why| Lost(why.to_string()))?;
         let mut headset = Self {
             socket,
             started: Instant::now(),
