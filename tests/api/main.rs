@@ -1,5 +1,7 @@
 //! A real server over real sockets: every route's main path and its errors, both protocols, both stop lanes.
 
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the report")]
+
 mod clients;
 mod dashboards;
 mod guards;
@@ -8,3 +10,4 @@ mod person;
 mod priors;
 mod record;
 mod scenes;
+mod visitor;

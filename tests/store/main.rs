@@ -1,5 +1,7 @@
 //! What survives: kill -9 of the real program in the middle of a session, the latch, the command line's refusals.
 
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the report")]
+
 use std::process::Command;
 use std::time::Duration;
 

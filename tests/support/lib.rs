@@ -1,5 +1,7 @@
 //! Support shared by the test suites: a real server on a free port, a VR client, a dashboard, a real process.
 
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the report")]
+
 pub mod client;
 pub mod dashboard;
 pub mod process;
