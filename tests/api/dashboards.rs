@@ -1,8 +1,12 @@
 //! The dashboard's socket: whole snapshots, events, requests and the stop's own lane.
 
+use covr_tests::SOON;
 use covr_tests::dashboard::Dashboard;
 use covr_tests::server::TestServer;
 use covr_wire::dashboard::{FromDashboard, MachineRequest, Mode, Outcome, ToDashboard};
+use futures_util::StreamExt;
+use tokio_tungstenite::tungstenite::Message;
+use tokio_tungstenite::tungstenite::protocol::frame::coding::CloseCode;
 
 async fn answer(dashboard: &mut Dashboard, wanted: u32) -> (Outcome, String, Option<u64>) {
     dashboard
@@ -79,6 +83,34 @@ async fn requests_are_answered_each_by_its_number() {
     assert!(outcome == Outcome::Refused && detail.contains("dance"), "{detail}");
     dashboard.say_text("nonsense").await;
     assert_eq!(answer(&mut dashboard, 0).await.0, Outcome::Refused);
+}
+
+#[tokio::test]
+async fn a_dashboard_that_falls_behind_with_events_is_sent_away_to_start_afresh() {
+    let server = TestServer::start_with(|config| config.dashboards.event_queue = 16).await;
+    let mut dashboard = Dashboard::connect(&server.host).await;
+    dashboard.hear("the welcome", |m| matches!(m, ToDashboard::Welcome { .. }).then_some(())).await;
+    // More than the socket's buffers hold, while nobody reads.
+    let ballast = "x".repeat(100_000);
+    for _ in 0..200 {
+        server.app.recorder.record("scene_event", "ballast", serde_json::json!({ "ballast": ballast }));
+    }
+    server.app.recorder.settled().await;
+    let closed = tokio::time::timeout(SOON, async {
+        loop {
+            match dashboard.socket.next().await {
+                Some(Ok(Message::Close(frame))) => return frame,
+                Some(Ok(_)) => {}
+                other => panic!("ended without a word: {other:?}"),
+            }
+        }
+    });
+    let frame = closed.await.expect("closed in time").expect("a close frame");
+    assert_eq!(frame.code, CloseCode::Again);
+    assert!(frame.reason.contains("behind"), "{}", frame.reason);
+    // A fresh one is welcome.
+    let mut fresh = Dashboard::connect(&server.host).await;
+    fresh.hear("a snapshot", |m| matches!(m, ToDashboard::Snapshot(_)).then_some(())).await;
 }
 
 #[tokio::test]

@@ -134,7 +134,10 @@ impl Server {
                 })
                 .await
         });
-        tracing::info!(%address, version = env!("CARGO_PKG_VERSION"), "covr serves");
+        tracing::info!(
+            version = env!("CARGO_PKG_VERSION"),
+            "covr serves; the dashboard is at http://{address}"
+        );
         Ok(Self { app, address, closing, http })
     }
 
