@@ -8,6 +8,8 @@ mod inbox;
 mod lateness;
 mod real_time;
 mod stop_lane;
+#[cfg(test)]
+mod tests;
 mod thread;
 
 use std::sync::Arc;

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
+use axum::serve::ListenerExt;
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::time::Span;
 use covr_engine::{Engine, EngineConfig, Request};
@@ -118,6 +119,12 @@ impl Server {
             prometheus,
         });
         tokio::spawn(live::publish(app.clone(), frames));
+        // Without Nagle's delay: a column's position that waits for the one before is old.
+        let listener = listener.tap_io(|connection| {
+            if let Err(why) = connection.set_nodelay(true) {
+                tracing::debug!(%why, "a connection keeps Nagle's delay");
+            }
+        });
         let router = http::router(app.clone());
         let mut closed = closing.subscribe();
         let http = tokio::spawn(async move {
@@ -127,7 +134,10 @@ impl Server {
                 })
                 .await
         });
-        tracing::info!(%address, version = env!("CARGO_PKG_VERSION"), "covr serves");
+        tracing::info!(
+            version = env!("CARGO_PKG_VERSION"),
+            "covr serves; the dashboard is at http://{address}"
+        );
         Ok(Self { app, address, closing, http })
     }
 

@@ -111,14 +111,14 @@ async fn walk_for_ever(
 async fn play(
     options: &Visitor,
     headset: &mut Headset,
-    samples: impl Iterator<Item = (Time, Pose<Room>)>,
+    mut samples: impl Iterator<Item = (Time, Pose<Room>)>,
 ) -> anyhow::Result<()> {
     let scene_version = headset.scene_version();
-    headset.enter(&options.name).await?;
+    let Some((first, pose)) = samples.next() else { return Ok(()) };
+    headset.enter(&options.name, &pose).await?;
     let started = tokio::time::Instant::now();
-    let mut first = None;
     for (at, pose) in samples {
-        let since_first = (at - *first.get_or_insert(at)).secs() / options.speed;
+        let since_first = (at - first).secs() / options.speed;
         headset.listen_until(started + Duration::from_secs_f64(since_first.max(0.0))).await?;
         if options.trace.is_none() && headset.scene_version() != scene_version {
             break;

@@ -15,7 +15,7 @@ use tokio::net::TcpStream;
 use tokio_tungstenite::tungstenite::Message;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::http::header::SEC_WEBSOCKET_PROTOCOL;
-use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
+use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async_with_config};
 
 /// The connection was lost.
 #[derive(Debug, thiserror::Error)]
@@ -39,7 +39,9 @@ impl Headset {
     pub async fn connect(url: &str, name: &str) -> anyhow::Result<Self> {
         let mut request = format!("{}/ws/v1/client", url.trim_end_matches('/')).into_client_request()?;
         request.headers_mut().insert(SEC_WEBSOCKET_PROTOCOL, JSON_SUBPROTOCOL.parse()?);
-        let (socket, _) = connect_async(request).await.map_err(|why| Lost(why.to_string()))?;
+        // Without Nagle's delay: a pose that waits for the one before is old.
+        let connected = connect_async_with_config(request, None, true).await;
+        let (socket, _) = connected.map_err(|why| Lost(why.to_string()))?;
         let mut headset = Self {
             socket,
             started: Instant::now(),
@@ -62,10 +64,12 @@ impl Headset {
         Ok(headset)
     }
 
-    /// The person enters.
-    pub async fn enter(&mut self, person: &str) -> anyhow::Result<()> {
+    /// The person enters, and where they are goes out with it: a person inside whose place is unknown stops the machine.
+    pub async fn enter(&mut self, person: &str, pose: &Pose<Room>) -> anyhow::Result<()> {
         self.sequence = 0;
-        self.say(&FromClient::Enter(PersonName { person: person.into() })).await
+        let enter = frame_of(&FromClient::Enter(PersonName { person: person.into() }))?;
+        self.socket.feed(enter).await.map_err(lost)?;
+        self.send_pose(person, pose).await
     }
 
     /// The person leaves.
@@ -177,16 +181,23 @@ impl Headset {
     }
 
     async fn say(&mut self, message: &FromClient) -> anyhow::Result<()> {
-        let message = match Encoding::Json.encode(message)? {
-            Frame::Text(text) => Message::Text(text.into()),
-            Frame::Binary(bytes) => Message::Binary(bytes.into()),
-        };
-        self.socket.send(message).await.map_err(|why| Lost(why.to_string()).into())
+        self.socket.send(frame_of(message)?).await.map_err(lost)
     }
 
     fn now_micros(&self) -> i64 {
         self.started.elapsed().as_micros() as i64
     }
+}
+
+fn frame_of(message: &FromClient) -> anyhow::Result<Message> {
+    Ok(match Encoding::Json.encode(message)? {
+        Frame::Text(text) => Message::Text(text.into()),
+        Frame::Binary(bytes) => Message::Binary(bytes.into()),
+    })
+}
+
+fn lost(why: tokio_tungstenite::tungstenite::Error) -> anyhow::Error {
+    Lost(why.to_string()).into()
 }
 
 const LONGEST_WELCOME: Duration = Duration::from_secs(10);

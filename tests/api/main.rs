@@ -1,0 +1,13 @@
+//! A real server over real sockets: every route's main path and its errors, both protocols, both stop lanes.
+
+#![allow(clippy::unwrap_used, reason = "in a test a panic is the report")]
+
+mod clients;
+mod dashboards;
+mod guards;
+mod machine;
+mod person;
+mod priors;
+mod record;
+mod scenes;
+mod visitor;

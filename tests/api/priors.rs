@@ -1,0 +1,46 @@
+//! Priors: all or nothing, recorded with their author, in force after a restart.
+
+use covr_tests::server::TestServer;
+
+fn prior(state: &serde_json::Value, object: &str) -> f64 {
+    let objects = state["objects"].as_array().unwrap();
+    objects.iter().find(|o| o["id"] == object).unwrap()["prior"].as_f64().unwrap()
+}
+
+#[tokio::test]
+async fn a_prior_change_takes_effect_and_is_recorded() {
+    let server = TestServer::start().await;
+    let body = "{\"lamp\": 0.9, \"globe\": 0.1}";
+    let response = server.call_as(Some("Ada"), "PATCH", "/api/v1/priors", Some(body)).await;
+    assert!(response.status().is_success());
+    let state = server.good("GET", "/api/v1/state", None).await;
+    assert_eq!((prior(&state, "lamp"), prior(&state, "globe"), prior(&state, "desk")), (0.9, 0.1, 0.5));
+    let changes = server.good("GET", "/api/v1/priors/changes", None).await;
+    let lamp = changes.as_array().unwrap().iter().find(|c| c["object"] == "lamp").unwrap();
+    assert_eq!((&lamp["author"], &lamp["from"], &lamp["to"]), (&"Ada".into(), &0.5.into(), &0.9.into()));
+    assert_eq!((&lamp["scene_id"], &lamp["scene_version"]), (&1.into(), &1.into()));
+    assert!(lamp["at"].as_str().unwrap().ends_with('Z'));
+
+    let dir = server.shutdown().await;
+    let again = TestServer::start_in(dir, |_| {}).await;
+    let state = again.good("GET", "/api/v1/state", None).await;
+    assert_eq!(prior(&state, "lamp"), 0.9, "in force after a restart");
+    again.good("PUT", "/api/v1/scenes/1/activate", None).await;
+    let state = again.good("GET", "/api/v1/state", None).await;
+    assert_eq!(prior(&state, "lamp"), 0.5, "an activation starts from the document");
+}
+
+#[tokio::test]
+async fn of_a_bad_change_nothing_is_done_and_all_that_is_bad_is_named() {
+    let server = TestServer::start().await;
+    let body = "{\"lamp\": 0.9, \"ghost\": 0.5, \"desk\": 1.5, \"door\": \"high\"}";
+    let problem = server.refused(422, "PATCH", "/api/v1/priors", Some(body)).await;
+    let named: Vec<&str> = problem.errors.iter().map(|error| error.path.as_str()).collect();
+    assert_eq!(named, ["desk", "door", "ghost"]);
+    let state = server.good("GET", "/api/v1/state", None).await;
+    assert_eq!(prior(&state, "lamp"), 0.5);
+    assert_eq!(server.good("GET", "/api/v1/priors/changes", None).await.as_array().unwrap().len(), 0);
+    server.refused(400, "PATCH", "/api/v1/priors", Some("[0.4]")).await;
+    server.refused(400, "PATCH", "/api/v1/priors", Some("{\"lamp\": NaN}")).await;
+    server.refused(422, "GET", "/api/v1/priors/changes?limit=0", None).await;
+}

@@ -1,0 +1,56 @@
+//! What is kept: acts with their authors, sessions, limits.
+
+use covr_tests::server::TestServer;
+
+#[tokio::test]
+async fn who_asked_what_is_in_the_record_before_the_answer() {
+    let server = TestServer::start().await;
+    server.call_as(Some("Ada"), "POST", "/api/v1/arm", None).await;
+    server.call_as(Some("Bo"), "POST", "/api/v1/stop", Some("{\"reason\": \"drill\"}")).await;
+    let events = server.good("GET", "/api/v1/events?limit=50", None).await;
+    let find = |kind: &str| {
+        let events = events.as_array().unwrap();
+        events.iter().find(|e| e["kind"] == kind).unwrap_or_else(|| panic!("no {kind} in {events:?}")).clone()
+    };
+    let refused = find("request_refused");
+    assert_eq!((&refused["detail"]["request"], &refused["detail"]["author"]), (&"arm".into(), &"Ada".into()));
+    let stop = find("stop_pressed");
+    assert_eq!((&stop["detail"]["author"], &stop["detail"]["reason"]), (&"Bo".into(), &"drill".into()));
+    assert!(stop["detail"]["to_drive_micros"].is_u64());
+    let changed = find("mode_changed");
+    assert_eq!(
+        (&changed["detail"]["from"], &changed["detail"]["to"]),
+        (&"disarmed".into(), &"latched_stop".into())
+    );
+}
+
+#[tokio::test]
+async fn a_session_lasts_from_arming_to_the_stop_and_holds_its_events() {
+    let server = TestServer::start().await;
+    server.arm().await;
+    let sessions = server.good("GET", "/api/v1/sessions", None).await;
+    assert_eq!((&sessions[0]["ended_at"], &sessions[0]["scene_id"]), (&serde_json::Value::Null, &1.into()));
+    server.good("POST", "/api/v1/stop", None).await;
+    let sessions = server.good("GET", "/api/v1/sessions", None).await;
+    assert_eq!(sessions[0]["how"], "latched_stop");
+    let id = sessions[0]["id"].as_i64().unwrap();
+    let events = server.good("GET", &format!("/api/v1/events?session={id}"), None).await;
+    let events = events.as_array().unwrap();
+    let to = |event: &serde_json::Value| event["detail"]["to"].clone();
+    let changes: Vec<_> = events.iter().filter(|e| e["kind"] == "mode_changed").map(to).collect();
+    assert_eq!(
+        changes,
+        ["latched_stop", "following"],
+        "newest first, from the first to the last of the session"
+    );
+}
+
+#[tokio::test]
+async fn limits_are_checked() {
+    let server = TestServer::start().await;
+    for path in ["/api/v1/events?limit=0", "/api/v1/sessions?limit=10001"] {
+        let problem = server.refused(422, "GET", path, None).await;
+        assert_eq!(problem.errors[0].path, "limit");
+    }
+    server.refused(400, "GET", "/api/v1/events?limit=many", None).await;
+}

@@ -1,0 +1,51 @@
+//! A dashboard for tests.
+
+use covr_wire::dashboard::{FromDashboard, ToDashboard};
+use futures_util::{SinkExt, StreamExt};
+use tokio::net::TcpStream;
+use tokio_tungstenite::tungstenite::Message;
+use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
+
+use crate::SOON;
+
+/// A connected dashboard.
+pub struct Dashboard {
+    /// The raw socket.
+    pub socket: WebSocketStream<MaybeTlsStream<TcpStream>>,
+}
+
+impl Dashboard {
+    /// Connect.
+    pub async fn connect(host: &str) -> Self {
+        let (socket, _) = connect_async(format!("ws://{host}/ws/v1/dashboard")).await.unwrap();
+        Self { socket }
+    }
+
+    /// Say a message.
+    pub async fn say(&mut self, message: &FromDashboard) {
+        self.say_text(&serde_json::to_string(message).unwrap()).await;
+    }
+
+    /// Say anything.
+    pub async fn say_text(&mut self, text: &str) {
+        self.socket.send(Message::Text(text.into())).await.unwrap();
+    }
+
+    /// The next message that is what is looked for.
+    pub async fn hear<T>(&mut self, what: &str, mut is_it: impl FnMut(&ToDashboard) -> Option<T>) -> T {
+        let found = tokio::time::timeout(SOON, async {
+            loop {
+                match self.socket.next().await {
+                    Some(Ok(Message::Text(text))) => {
+                        if let Some(found) = is_it(&serde_json::from_str(&text).unwrap()) {
+                            return found;
+                        }
+                    }
+                    Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
+                    other => panic!("{what}: the connection ended with {other:?}"),
+                }
+            }
+        });
+        found.await.unwrap_or_else(|_| panic!("{what}: not heard within {SOON:?}"))
+    }
+}
