@@ -1,7 +1,7 @@
 /** A person is served: in at least half of ten reaches the column stands at the object before the hand does. */
 import { writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { afterEach, expect, it } from "vitest";
+import { expect, it } from "vitest";
 import type { Snapshot } from "../../web/src/api/types";
 import { Dashboard, distanceTo } from "./support/dashboard";
 import { room } from "./support/scenes";
@@ -15,22 +15,13 @@ interface Outcome {
   readonly distanceM: number;
 }
 
-let server: CovrServer | null = null;
-let dashboard: Dashboard | null = null;
-
-afterEach(async () => {
-  await dashboard?.end();
-  await server?.end();
-  [dashboard, server] = [null, null];
-});
 
 it("brings the column to the object before the hand in at least half of ten reaches", { timeout: 600_000 }, async () => {
   const reaches = await recordedReaches("fixed", REACHES);
   const size = reaches?.[0] === undefined ? 4 : reaches[0].arena.x[1] - reaches[0].arena.x[0];
-  server = await CovrServer.start(`[machine]\ntravel_m = [0.0, 0.0, ${size.toFixed(1)}, ${size.toFixed(1)}]\n`);
+  const server = await CovrServer.start(`[machine]\ntravel_m = [0.0, 0.0, ${size.toFixed(1)}, ${size.toFixed(1)}]\n`);
   if (reaches === null) await server.useScene(room(size, BALLS));
   const watched = await Dashboard.open(server.url);
-  dashboard = watched;
   await watched.homeAndArm();
 
   let outcomes: () => Outcome[];
