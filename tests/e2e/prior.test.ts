@@ -1,5 +1,5 @@
 /** A prior that is edited in the page moves the column. */
-import { afterEach, beforeEach, expect, it } from "vitest";
+import { beforeEach, expect, it } from "vitest";
 import { Dashboard, distanceTo } from "./support/dashboard";
 import { room } from "./support/scenes";
 import { CovrServer } from "./support/server";
@@ -12,10 +12,6 @@ let dashboard: Dashboard;
 beforeEach(async () => {
   server = await CovrServer.start();
 });
-afterEach(async () => {
-  await dashboard.end();
-  await server.end();
-});
 
 it("moves the column to the object whose prior was raised", async () => {
   // Two balls, mirror images of each other for a person who stands and looks between them.
@@ -24,7 +20,9 @@ it("moves the column to the object whose prior was raised", async () => {
   dashboard = await Dashboard.open(server.url);
   await dashboard.homeAndArm();
   server.visitor("--trace", file);
-  await until("the column stands left of the middle", 60_000, () => dashboard.now.column.position_m[0] < 1.6);
+  await until("the column serves the left ball", 60_000, () => {
+    return dashboard.now.column.serves !== null && distanceTo(dashboard.now, [1, 1]) < 0.3;
+  });
 
   await dashboard.page.getByTestId("author").fill("Grace");
   await dashboard.page.getByTestId("author").press("Tab");

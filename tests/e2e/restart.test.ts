@@ -1,5 +1,5 @@
 /** kill -9 and a new start, as the page tells it. */
-import { afterEach, beforeEach, expect, it } from "vitest";
+import { beforeEach, expect, it } from "vitest";
 import { Dashboard } from "./support/dashboard";
 import { CovrServer } from "./support/server";
 import { until } from "./support/until";
@@ -10,10 +10,6 @@ let dashboard: Dashboard;
 beforeEach(async () => {
   server = await CovrServer.start();
   dashboard = await Dashboard.open(server.url);
-});
-afterEach(async () => {
-  await dashboard.end();
-  await server.end();
 });
 
 it("looks stale, comes back by itself, and says why it is latched and what clears it", async () => {

@@ -1,5 +1,5 @@
 /** Scenes by file: a bad one is refused with its place, a good one is stored and activated. */
-import { afterEach, beforeEach, expect, it } from "vitest";
+import { beforeEach, expect, it } from "vitest";
 import { Dashboard } from "./support/dashboard";
 import { room } from "./support/scenes";
 import { CovrServer } from "./support/server";
@@ -11,10 +11,6 @@ let dashboard: Dashboard;
 beforeEach(async () => {
   server = await CovrServer.start();
   dashboard = await Dashboard.open(server.url);
-});
-afterEach(async () => {
-  await dashboard.end();
-  await server.end();
 });
 
 it("shows where a bad scene is bad, and lists and activates a good one", async () => {

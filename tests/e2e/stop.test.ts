@@ -1,5 +1,5 @@
 /** The stop in the page: over the socket, and over HTTP when the socket is cut or answers nothing. */
-import { afterEach, beforeEach, describe, expect, it } from "vitest";
+import { beforeEach, describe, expect, it } from "vitest";
 import { Dashboard } from "./support/dashboard";
 import { SocketCutter } from "./support/proxy";
 import { CovrServer } from "./support/server";
@@ -15,12 +15,7 @@ beforeEach(async () => {
   dashboard = await Dashboard.open(cutter.url);
   await dashboard.homeAndArm();
   server.visitor("--seed", "7");
-  await dashboard.moves(0.2);
-});
-afterEach(async () => {
-  await dashboard.end();
-  await cutter.end();
-  await server.end();
+  await dashboard.moves(0.4);
 });
 
 describe("the stop in the page", () => {

@@ -1,7 +1,8 @@
 /** The dashboard in a real browser, and what its own socket receives. */
 import { mkdir } from "node:fs/promises";
 import { join } from "node:path";
-import { chromium, type Browser, type Page } from "playwright-core";
+import { chromium, type Page } from "playwright-core";
+import { onTestFinished } from "vitest";
 import type { Mode, Snapshot, ToDashboard, WireEvent } from "../../../web/src/api/types";
 import { until } from "./until";
 
@@ -14,10 +15,8 @@ export class Dashboard {
   readonly events: WireEvent[] = [];
   /** What the page complained of. */
   readonly complaints: string[] = [];
-  readonly #browser: Browser;
 
-  private constructor(browser: Browser, page: Page) {
-    this.#browser = browser;
+  private constructor(page: Page) {
     this.page = page;
     page.on("pageerror", (error) => this.complaints.push(error.message));
     page.on("websocket", (socket) => {
@@ -27,7 +26,7 @@ export class Dashboard {
     });
   }
 
-  /** Opens the page and waits until it is live. */
+  /** Opens the page, until the test ends, and waits until it is live. */
   static async open(url: string, scheme: "dark" | "light" = "dark"): Promise<Dashboard> {
     const browser = await chromium.launch({
       executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
@@ -41,8 +40,9 @@ export class Dashboard {
         "--disable-sync",
       ],
     });
+    onTestFinished(() => browser.close());
     const page = await browser.newPage({ viewport: { width: 1366, height: 768 }, colorScheme: scheme });
-    const dashboard = new Dashboard(browser, page);
+    const dashboard = new Dashboard(page);
     await page.goto(url);
     await dashboard.isLive();
     return dashboard;
@@ -99,11 +99,6 @@ export class Dashboard {
     const folder = join(import.meta.dirname, "../out");
     await mkdir(folder, { recursive: true });
     await this.page.screenshot({ path: join(folder, `${name}.png`) });
-  }
-
-  /** Closes the browser. */
-  async end(): Promise<void> {
-    await this.#browser.close();
   }
 
   #take(message: ToDashboard): void {

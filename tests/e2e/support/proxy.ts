@@ -1,5 +1,6 @@
 /** A wire between browser and server that can be cut for WebSockets alone: HTTP goes on. */
 import { connect, createServer, type AddressInfo, type Server, type Socket } from "node:net";
+import { onTestFinished } from "vitest";
 
 /** What happens to WebSockets. */
 export type SocketFate = "passed" | "cut" | "swallowed";
@@ -22,9 +23,10 @@ export class SocketCutter {
     });
   }
 
-  /** Listens on a free port before a server's. */
+  /** Listens on a free port before a server's, until the test ends. */
   static async before(targetPort: number): Promise<SocketCutter> {
     const cutter = new SocketCutter(targetPort);
+    onTestFinished(() => cutter.#end());
     await new Promise<void>((resolve) => cutter.#server.listen(0, "127.0.0.1", resolve));
     return cutter;
   }
@@ -41,8 +43,7 @@ export class SocketCutter {
     if (fate === "swallowed") for (const [client, upstream] of this.#sockets) client.unpipe(upstream).resume();
   }
 
-  /** Closes it with everything that goes through it. */
-  async end(): Promise<void> {
+  async #end(): Promise<void> {
     for (const socket of this.#all) socket.destroy();
     await new Promise((resolve) => this.#server.close(resolve));
   }

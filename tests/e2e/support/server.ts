@@ -4,6 +4,7 @@ import { mkdtemp, rm, writeFile } from "node:fs/promises";
 import { createServer, type AddressInfo } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { onTestFinished } from "vitest";
 import type { Snapshot, WireEvent } from "../../../web/src/api/types";
 import { until } from "./until";
 
@@ -22,10 +23,11 @@ export class CovrServer {
     this.#config = config;
   }
 
-  /** Starts one; the configuration is TOML. */
+  /** Starts one that ends with the test; the configuration is TOML. */
   static async start(config = ""): Promise<CovrServer> {
     const folder = await mkdtemp(join(tmpdir(), "covr-e2e-"));
     const server = new CovrServer(folder, await freePort(), join(folder, "covr.toml"));
+    onTestFinished(() => server.#end());
     await writeFile(server.#config, config);
     await server.run();
     return server;
@@ -101,8 +103,7 @@ export class CovrServer {
     return id;
   }
 
-  /** Ends everything that was started, and removes what was stored. */
-  async end(): Promise<void> {
+  async #end(): Promise<void> {
     for (const visitor of this.#visitors) await ended(visitor, "SIGKILL");
     if (this.#child !== null) await ended(this.#child, "SIGTERM");
     await rm(this.folder, { recursive: true, force: true });

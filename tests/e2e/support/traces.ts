@@ -13,6 +13,8 @@ export interface Reach {
   readonly arena: { readonly x: readonly [number, number]; readonly y: readonly [number, number] };
   readonly targets: readonly { readonly id: string; readonly x: number; readonly y: number; readonly z: number; readonly r: number }[];
   readonly goal: string;
+  /** In s from the first frame. */
+  readonly events: { readonly reach: number };
   /** The line as it was recorded. */
   readonly line: string;
 }

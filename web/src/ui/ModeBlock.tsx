@@ -7,15 +7,17 @@ import { modeWords, span } from "../lib/format";
 /** Mode, since when, whom it serves and what it expects. */
 export function ModeBlock(props: { readonly live: Live }): JSX.Element {
   const snapshot = createMemo(() => props.live.snapshot());
+  /** In any other mode the column serves nobody, whatever the rule makes of the person. */
+  const follows = (): boolean => ["following", "protective_stop"].includes(snapshot()?.mode ?? "");
   const serves = createMemo(() => {
     const state = snapshot();
-    if (state === null || state.column.serves === null) return null;
+    if (state === null || state.column.serves === null || !follows()) return null;
     const id = state.column.serves;
     return state.persons.find((person) => person.id === id)?.name ?? `person ${id}`;
   });
   const committed = createMemo(() => {
     const id = snapshot()?.column.committed ?? null;
-    return id === null ? null : labelOf(props.live.scene()?.scene ?? null, id);
+    return id === null || !follows() ? null : labelOf(props.live.scene()?.scene ?? null, id);
   });
   return (
     <div class="mode fades" data-mode={snapshot()?.mode ?? "unknown"}>

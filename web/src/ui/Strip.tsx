@@ -20,15 +20,6 @@ export function Strip(props: { readonly live: Live }): JSX.Element {
           </span>
         )}
       </Show>
-      <Show when={loop()}>
-        {(state) => (
-          <span class="fades" classList={{ bad: state().missed_deadlines > 0 && state().lateness_max_micros > 1e6 / state().rate_hz }}>
-            loop {state().rate_hz.toFixed(0)} Hz, late p99 {millis(state().lateness_p99_micros / 1000)}, greatest{" "}
-            {millis(state().lateness_max_micros / 1000)}, {state().missed_deadlines} missed of {state().steps};{" "}
-            {state().scheduling}
-          </span>
-        )}
-      </Show>
       <span class="fades" data-testid="clients">
         <Show when={clients().length > 0} fallback="no VR client">
           <For each={clients()}>
@@ -42,6 +33,15 @@ export function Strip(props: { readonly live: Live }): JSX.Element {
           </For>
         </Show>
       </span>
+      <Show when={loop()}>
+        {(state) => (
+          <span class="fades loop" title={state().scheduling} classList={{ bad: state().missed_deadlines > 0 && state().lateness_max_micros > 1e6 / state().rate_hz }}>
+            loop {state().rate_hz.toFixed(0)} Hz, late p99 {millis(state().lateness_p99_micros / 1000)}, greatest{" "}
+            {millis(state().lateness_max_micros / 1000)}, {state().missed_deadlines} missed of {state().steps};{" "}
+            {state().scheduling}
+          </span>
+        )}
+      </Show>
       <Show when={props.live.trouble()}>
         {(trouble) => (
           <span class="bad">

@@ -35,7 +35,8 @@ export function drawTopView(
   for (const person of snapshot?.persons ?? []) drawZone(view, person);
   if (scene !== null) drawObjects(view, scene, snapshot);
   if (snapshot !== null) {
-    drawColumn(view, snapshot, scene);
+    // Before homing its numbers are not places in the room.
+    if (snapshot.column.homed) drawColumn(view, snapshot, scene);
     for (const person of snapshot.persons) drawPerson(view, person, snapshot.column.serves === person.id);
   }
 }
@@ -201,7 +202,6 @@ function drawColumn(view: View, snapshot: Snapshot, scene: SceneDocument | null)
   const { column } = snapshot;
   const [x, y] = column.position_m;
   const size = scene?.column.size ?? COLUMN_SIZE_M;
-  context.globalAlpha = column.homed ? 1 : 0.4;
   for (const prop of scene?.props ?? []) {
     const at: Point = [x + prop.offset[0], y + prop.offset[1]];
     const [width, depth] = [Math.max(prop.size[0], LEAST_PROP_M), Math.max(prop.size[1], LEAST_PROP_M)];
@@ -224,7 +224,6 @@ function drawColumn(view: View, snapshot: Snapshot, scene: SceneDocument | null)
   const ahead: Point = [x + column.velocity_mps[0] * LOOKAHEAD_SECS, y + column.velocity_mps[1] * LOOKAHEAD_SECS];
   context.lineWidth = 3;
   line(context, plan.toPx([x, y]), plan.toPx(ahead), palette.column);
-  context.globalAlpha = 1;
 
   const target = column.target_m === null ? null : plan.toPx(column.target_m);
   if (target !== null) {
