@@ -6,10 +6,11 @@ use anyhow::{Context, bail, ensure};
 use covr_wire::dashboard::{Mode, Snapshot, ToDashboard};
 use covr_wire::scene::SceneDocument;
 use futures_util::StreamExt;
-use reqwest::{Client, Response};
+use reqwest::{Client, RequestBuilder, Response};
 use tokio::time::Instant;
 
 use crate::http::{Problem, SceneStored};
+use crate::store::StoredScene;
 
 /// The server's HTTP side.
 pub struct Api {
@@ -77,14 +78,36 @@ impl Api {
         }
     }
 
-    /// Store a scene and activate it.
+    /// Store a scene, as a new version of the one of the same name if there is one, and activate it.
     pub async fn show_scene(&self, scene: &SceneDocument, author: &str) -> anyhow::Result<()> {
-        let request = self.http.post(format!("{}/api/v1/scenes", self.base)).header("X-Covr-Author", author);
-        let stored: SceneStored = good(request.json(scene).send().await?).await?.json().await?;
-        let activate = format!("{}/api/v1/scenes/{}/activate", self.base, stored.id);
-        good(self.http.put(activate).header("X-Covr-Author", author).send().await?).await?;
-        tracing::info!(scene = scene.name, id = stored.id, "scene activated");
+        let scenes = format!("{}/api/v1/scenes", self.base);
+        let known: Vec<StoredScene> = good(self.http.get(&scenes).send().await?).await?.json().await?;
+        let id = match known.into_iter().find(|known| known.name == scene.name) {
+            None => self.store(self.http.post(&scenes), scene, author).await?,
+            Some(known) => {
+                let stored = format!("{scenes}/{}", known.id);
+                let before: SceneDocument = good(self.http.get(&stored).send().await?).await?.json().await?;
+                if before == *scene {
+                    known.id
+                } else {
+                    self.store(self.http.put(&stored), scene, author).await?
+                }
+            }
+        };
+        let activate = self.http.put(format!("{scenes}/{id}/activate")).header(AUTHOR_HEADER, author);
+        good(activate.send().await?).await?;
+        tracing::info!(scene = scene.name, id, "scene activated");
         Ok(())
+    }
+
+    async fn store(
+        &self,
+        request: RequestBuilder,
+        scene: &SceneDocument,
+        author: &str,
+    ) -> anyhow::Result<i64> {
+        let response = request.header(AUTHOR_HEADER, author).json(scene).send().await?;
+        Ok(good(response).await?.json::<SceneStored>().await?.id)
     }
 
     /// The machine's name, as the server tells its dashboards.
@@ -125,6 +148,7 @@ async fn good(response: Response) -> anyhow::Result<Response> {
     }
 }
 
+const AUTHOR_HEADER: &str = "X-Covr-Author";
 const LONGEST_CALL: Duration = Duration::from_secs(10);
 const LONGEST_HOMING: Duration = Duration::from_secs(120);
 const BETWEEN_TRIES: Duration = Duration::from_millis(200);

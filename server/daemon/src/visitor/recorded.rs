@@ -66,32 +66,44 @@ impl Program {
     }
 }
 
-/// The targets of a recording as spheres, in the room; none for a walk without targets.
+/// The targets of a recording as spheres, in the room; none for a walk without targets. Targets derived from views
+/// (pearl) may lie outside the recorded arena, which is then widened to hold them: objects are inside the arena.
 pub fn scene_of(recording: &Recording) -> Option<SceneDocument> {
     if recording.targets.is_empty() {
         return None;
     }
     let room_from_trace = recording.room_from_trace();
     let size = recording.size_m();
-    let objects = recording.targets.iter().map(|target| ObjectDocument {
-        id: target.id.clone(),
-        label: target.label.clone(),
-        position: room_from_trace.point(&target.position).vector().into(),
-        yaw: 0.0,
-        shape: ShapeDocument::Sphere { radius: target.radius_m },
-        prop: None,
-        prior: 1.0,
-        enabled: true,
-    });
+    let objects: Vec<ObjectDocument> = recording
+        .targets
+        .iter()
+        .map(|target| ObjectDocument {
+            id: target.id.clone(),
+            label: target.label.clone(),
+            position: room_from_trace.point(&target.position).vector().into(),
+            yaw: 0.0,
+            shape: ShapeDocument::Sphere { radius: target.radius_m },
+            prop: None,
+            prior: 1.0,
+            enabled: true,
+        })
+        .collect();
+    let (mut min, mut max) = ([0.0_f64; 2], [size.x, size.y]);
+    for object in &objects {
+        for axis in 0..2 {
+            min[axis] = min[axis].min(object.position[axis]);
+            max[axis] = max[axis].max(object.position[axis]);
+        }
+    }
     let what = recording.mode.as_deref().map(|mode| format!(", {mode}")).unwrap_or_default();
     Some(SceneDocument {
         schema: SCHEMA.into(),
         name: format!("Recorded: {}{what}", recording.dataset),
         description: "The targets of a recording, as spheres.".into(),
-        arena: ArenaDocument { min: [0.0, 0.0], max: [size.x, size.y] },
+        arena: ArenaDocument { min, max },
         column: ColumnDocument::default(),
         props: Vec::new(),
-        objects: objects.collect(),
+        objects,
         keep_outs: Vec::new(),
     })
 }
