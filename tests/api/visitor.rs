@@ -22,19 +22,24 @@ fn options(server: &TestServer) -> Visitor {
 #[tokio::test]
 async fn a_made_up_visitor_homes_arms_and_is_followed() {
     let server = TestServer::start().await;
-    let runs = tokio::spawn(visitor::run(Visitor { arm: true, ..options(&server) }));
-    let served = server
-        .published("the visitor is followed", HOMED, |p| {
-            p.snapshot.mode == Mode::Following && p.snapshot.persons.iter().any(|person| person.tracked)
-        })
-        .await;
+    let runs = visitor::run(Visitor { arm: true, ..options(&server) });
+    let mut runs = std::pin::pin!(runs);
+    let served = server.published("the visitor is followed", HOMED, |p| {
+        p.snapshot.mode == Mode::Following && p.snapshot.persons.iter().any(|person| person.tracked)
+    });
+    let served = tokio::select! {
+        served = served => served,
+        ended = &mut runs => panic!("the visitor ended: {ended:?}"),
+    };
     assert!(served.snapshot.persons[0].pose_age_secs < 0.2, "{:?}", served.snapshot.persons[0]);
     let client = covr_tests::eventually("its clock is known", || async {
         server.app.clients.list().into_iter().find(|client| client.rtt_millis.is_some())
-    })
-    .await;
+    });
+    let client = tokio::select! {
+        client = client => client,
+        ended = &mut runs => panic!("the visitor ended: {ended:?}"),
+    };
     assert_eq!((client.name.as_str(), client.convention.as_str(), client.errors), ("visitor", "openxr", 0));
-    runs.abort();
 }
 
 #[tokio::test]

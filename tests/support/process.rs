@@ -46,7 +46,6 @@ impl Process {
         let child = Command::new(program())
             .args(["serve", "--bind", &address.to_string(), "--database"])
             .arg(dir.join("covr.sqlite"))
-            .env("COVR_CONTROL__REAL_TIME", "false")
             .env("COVR_MACHINE__TRAVEL_M", "[0.0, 0.0, 1.0, 1.0]")
             .stdout(Stdio::null())
             .stderr(Stdio::null())

@@ -34,7 +34,6 @@ pub fn test_config(dir: &TempDir) -> Config {
     let mut config = Config::default();
     config.server.bind = ([127, 0, 0, 1], 0).into();
     config.server.database = dir.path().join("covr.sqlite");
-    config.control.real_time = false;
     config.machine.travel_m = [0.0, 0.0, 1.0, 1.0];
     config
 }
