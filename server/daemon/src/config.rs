@@ -158,7 +158,7 @@ impl Default for Config {
                 x: AxisLimits::PAPER,
                 y: AxisLimits::PAPER,
             },
-            people: People { intention_rule: RuleName::Paper, v_h_mps: 1.6 },
+            people: People { intention_rule: RuleName::PaperBest, v_h_mps: 1.6 },
             clients: Clients {
                 most: 8,
                 persons_each: 2,

@@ -310,6 +310,6 @@ fn prometheus() -> anyhow::Result<PrometheusHandle> {
         .map_err(|why| anyhow::anyhow!("metrics: {why}"))
 }
 
-const FIRST_SCENE: &str = include_str!("first_scene.json");
+const FIRST_SCENE: &str = include_str!("../../../deploy/scenes/demo.json");
 const AT_REST_MPS: f64 = 0.01;
 const LONGEST_CLOSE: Duration = Duration::from_secs(3);

@@ -61,7 +61,7 @@ impl SimulatedMachine {
         let controller = Controller::new(&parameters);
         let last_report = MachineReport {
             answered_at: Time::ZERO,
-            position: Floor::default(),
+            position: parameters.parked,
             velocity: Planar::ZERO,
             current_amps: [0.0; 2],
             drive: controller.drive(),
@@ -150,7 +150,7 @@ impl SimulatedMachine {
                 self.parameters.travel.min
                     + Planar::new(places[0] - switches[0] - outside, places[1] - switches[1] - outside)
             }
-            None => Floor::new(places[0], places[1]),
+            None => self.parameters.parked + Planar::new(places[0], places[1]),
         };
         let speed = |i: usize| self.controller.axes[i].measured_mps();
         let amps = |i: usize| (self.plants[i].amps().abs() / CURRENT_STEP_AMPS).round() * CURRENT_STEP_AMPS;

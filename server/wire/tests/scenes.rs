@@ -6,7 +6,7 @@ use covr_wire::scene::{MAX_SCENE_BYTES, SceneError, parse_scene, scene_schema};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-const EXAMPLES: [&str; 3] = ["demo.json", "paper-demo.json", "gallery.json"];
+const EXAMPLES: [&str; 4] = ["demo.json", "kitchen.json", "paper-demo.json", "gallery.json"];
 
 fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../deploy/scenes").join(name);

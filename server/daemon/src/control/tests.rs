@@ -81,7 +81,7 @@ fn start() -> Stage {
     let (whims, whims_out) = std_mpsc::channel();
     let told = Arc::new(Mutex::new(Vec::new()));
     let puppet = Puppet { whims: whims_out, told: told.clone() };
-    let (_, scene) = parse_scene(include_bytes!("../first_scene.json")).unwrap();
+    let (_, scene) = parse_scene(include_bytes!("../../../../deploy/scenes/demo.json")).unwrap();
     let period = Duration::from_millis(4);
     let config = EngineConfig {
         limits: puppet.limits(),

@@ -100,6 +100,8 @@ pub struct MachineParameters {
     pub travel: Travel,
     /// Where the column truly stands when the power comes on, room frame.
     pub start: Floor,
+    /// Where it is told that it was parked: what it reports counts from there until it is homed, room frame.
+    pub parked: Floor,
 }
 
 /// A parameter that no machine can have.
@@ -226,6 +228,7 @@ impl MachineParameters {
             limits: Limits::PAPER,
             travel,
             start: travel.centre(),
+            parked: travel.centre(),
         }
     }
 
