@@ -177,7 +177,7 @@ function drawObjects(view: View, scene: SceneDocument, snapshot: Snapshot | null
   }
 }
 
-/** Names and weights, over everything, and none over another: who is predicted is named first, then by weight. */
+/** Names and weights, over everything, and none over another: the predicted first, then in the scene's order, which stays. */
 function drawLabels(view: View, scene: SceneDocument, snapshot: Snapshot | null): void {
   const { context, palette, plan } = view;
   const states = new Map<string, ObjectState>(snapshot?.objects.map((object) => [object.id, object]));
@@ -191,7 +191,7 @@ function drawLabels(view: View, scene: SceneDocument, snapshot: Snapshot | null)
     const half = context.measureText(person.name).width / 2;
     taken.push({ left: px - Math.max(half, head), top: py - head, right: px + Math.max(half, head), bottom: py + head + 18 });
   }
-  const labels = scene.objects.map((document): Label => {
+  const labels = scene.objects.map((document, index): Label => {
     const state = states.get(document.id);
     const name = document.label !== undefined && document.label !== "" ? document.label : document.id;
     const number = !document.enabled ? "off" : state === undefined ? "" : state.weight.toFixed(2);
@@ -199,7 +199,7 @@ function drawLabels(view: View, scene: SceneDocument, snapshot: Snapshot | null)
     const nameWidth = context.measureText(name).width;
     context.font = FONT_SMALL;
     const about = pixelsAround(footprintOf(document), plan);
-    const urgency = document.id === committed ? Infinity : (state?.weight ?? 0);
+    const urgency = document.id === committed ? Infinity : -index;
     return { name, number, nameWidth, numberWidth: context.measureText(number).width, about, urgency };
   });
   for (const { label, at } of placeLabels(labels, taken)) {
