@@ -4,6 +4,7 @@
  */
 import type { KeepOutDocument, MachineShape, ObjectState, Person, SceneDocument, Snapshot } from "../api/types";
 import { boundsAround, fitPlan, footprintOf, type Bounds, type Footprint, type Plan, type Point } from "../lib/plan";
+import { LINE_PX, placeLabels, type Box, type Label } from "../lib/placement";
 import type { Palette } from "../lib/theme";
 
 /** All that is painted. */
@@ -34,11 +35,10 @@ export function drawTopView(
   const { snapshot, scene } = picture;
   for (const person of snapshot?.persons ?? []) drawZone(view, person);
   if (scene !== null) drawObjects(view, scene, snapshot);
-  if (snapshot !== null) {
-    // Before homing its numbers are not places in the room.
-    if (snapshot.column.homed) drawColumn(view, snapshot, scene);
-    for (const person of snapshot.persons) drawPerson(view, person, snapshot.column.serves === person.id);
-  }
+  // Before homing the column's numbers are not places in the room.
+  if (snapshot?.column.homed === true) drawColumn(view, snapshot, scene);
+  for (const person of snapshot?.persons ?? []) drawPerson(view, person, snapshot?.column.serves === person.id);
+  if (scene !== null) drawLabels(view, scene, snapshot);
 }
 
 interface View {
@@ -165,7 +165,7 @@ function drawObjects(view: View, scene: SceneDocument, snapshot: Snapshot | null
       context.globalAlpha = 1;
     }
     tracePath(view, footprint);
-    context.globalAlpha = document.enabled ? 0.45 + 0.55 * Math.min(1, weight) : 0.25;
+    context.globalAlpha = document.enabled ? 0.25 + 0.45 * Math.min(1, weight) : 0.15;
     context.fillStyle = colour;
     context.fill();
     context.globalAlpha = 1;
@@ -173,12 +173,39 @@ function drawObjects(view: View, scene: SceneDocument, snapshot: Snapshot | null
     context.strokeStyle = colour;
     tracePath(view, footprint);
     context.stroke();
-    const box = pixelsAround(footprint, plan);
     if (predicted) drawPredicted(view, state, centre);
-    const label = document.label !== undefined && document.label !== "" ? document.label : document.id;
-    write(view, label, [centre[0], box.top - 10], predicted ? palette.predicted : palette.text, FONT_LABEL);
-    const number = !document.enabled ? "off" : state === undefined ? "" : weight.toFixed(2);
-    write(view, number, [centre[0], box.bottom + 10], palette.muted, FONT_SMALL);
+  }
+}
+
+/** Names and weights, over everything, and none over another: the predicted first, then in the scene's order, which stays. */
+function drawLabels(view: View, scene: SceneDocument, snapshot: Snapshot | null): void {
+  const { context, palette, plan } = view;
+  const states = new Map<string, ObjectState>(snapshot?.objects.map((object) => [object.id, object]));
+  const committed = snapshot?.column.committed ?? null;
+  const taken: Box[] = [];
+  for (const person of snapshot?.persons ?? []) {
+    if (person.head_m === null) continue;
+    const [px, py] = plan.toPx([person.head_m[0], person.head_m[1]]);
+    const head = HEAD_M * plan.pxPerMetre;
+    context.font = FONT_LABEL;
+    const half = context.measureText(person.name).width / 2;
+    taken.push({ left: px - Math.max(half, head), top: py - head, right: px + Math.max(half, head), bottom: py + head + 18 });
+  }
+  const labels = scene.objects.map((document, index): Label => {
+    const state = states.get(document.id);
+    const name = document.label !== undefined && document.label !== "" ? document.label : document.id;
+    const number = !document.enabled ? "off" : state === undefined ? "" : state.weight.toFixed(2);
+    context.font = FONT_LABEL;
+    const nameWidth = context.measureText(name).width;
+    context.font = FONT_SMALL;
+    const about = pixelsAround(footprintOf(document), plan);
+    const urgency = document.id === committed ? Infinity : -index;
+    return { name, number, nameWidth, numberWidth: context.measureText(number).width, about, urgency };
+  });
+  for (const { label, at } of placeLabels(labels, taken)) {
+    const colour = label.urgency === Infinity ? palette.predicted : palette.text;
+    write(view, label.name, at, colour, FONT_LABEL);
+    write(view, label.number, [at[0], at[1] + LINE_PX], palette.muted, FONT_SMALL);
   }
 }
 
@@ -277,14 +304,7 @@ function drawPerson(view: View, person: Person, served: boolean): void {
   write(view, person.name + note, [px, py + head + 10], colour, FONT_LABEL);
 }
 
-interface PixelBox {
-  readonly left: number;
-  readonly top: number;
-  readonly right: number;
-  readonly bottom: number;
-}
-
-function pixelsAround(footprint: Footprint, plan: Plan): PixelBox {
+function pixelsAround(footprint: Footprint, plan: Plan): Box {
   if (footprint.kind === "disc") {
     const [x, y] = plan.toPx(footprint.centre);
     const radius = footprint.radius * plan.pxPerMetre;
@@ -319,7 +339,7 @@ function tracePath({ context, plan }: View, footprint: Footprint): void {
   context.closePath();
 }
 
-function hatch(context: CanvasRenderingContext2D, box: PixelBox, colour: string): void {
+function hatch(context: CanvasRenderingContext2D, box: Box, colour: string): void {
   const height = box.bottom - box.top;
   context.lineWidth = 1;
   for (let x = box.left - height; x < box.right; x += HATCH_PX) {
