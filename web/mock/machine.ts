@@ -73,6 +73,11 @@ export class MockMachine {
 
   /** Asks for something else. */
   ask(request: MachineRequest, reason: string | null): MockAnswer {
+    if (typeof request === "object" && "confirm_left" in request) {
+      const detail = `the headset of person ${request.confirm_left} is tracked: they are in the arena`;
+      this.event("request_refused", detail);
+      return { outcome: "refused", detail };
+    }
     if (typeof request === "object") {
       this.#awaitsConfirmation = false;
       this.event("request_accepted", `person ${request.confirm_origin} stands on the floor mark`);

@@ -75,6 +75,16 @@ impl App {
         self.ask_recorded(asker, &name, Request::ConfirmOrigin(person), None).await
     }
 
+    /// A game master saw that this person, whose headset is lost, has left.
+    pub async fn confirm_left(&self, asker: &Asker, person: PersonId) -> Result<Answer, NotDelivered> {
+        let name = format!("confirm_left of {}", self.persons.name(person));
+        let answer = self.ask_recorded(asker, &name, Request::ConfirmLeft(person), None).await?;
+        if answer.outcome == Outcome::Accepted {
+            self.persons.leave(person);
+        }
+        Ok(answer)
+    }
+
     /// Press the software stop; the time from `received_at` to the braking command at the drive. It is
     /// recorded before this returns, or given up after [`LONGEST_RECORDING`]: stopping does not wait for a disk.
     pub async fn stop(

@@ -70,6 +70,10 @@ pub struct Machine {
     pub kind: MachineKind,
     /// Travel limits `[min_x, min_y, max_x, max_y]`, m.
     pub travel_m: [f64; 4],
+    /// Where the column is parked when the power comes on, m.
+    pub parked_x_m: f64,
+    /// See `parked_x_m`.
+    pub parked_y_m: f64,
     /// The long rail.
     pub x: AxisLimits,
     /// The cross rail.
@@ -155,6 +159,8 @@ impl Default for Config {
             machine: Machine {
                 kind: MachineKind::Simulated,
                 travel_m: [0.0, 0.0, 4.0, 4.0],
+                parked_x_m: 0.3,
+                parked_y_m: 0.3,
                 x: AxisLimits::PAPER,
                 y: AxisLimits::PAPER,
             },

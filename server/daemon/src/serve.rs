@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
 use axum::serve::ListenerExt;
+use covr_engine::frames::Floor;
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::time::Span;
 use covr_engine::{Engine, EngineConfig, Request};
@@ -266,7 +267,10 @@ fn check_reach(config: &Config, reach: Reach) -> anyhow::Result<()> {
 fn machine(config: &Config) -> anyhow::Result<Box<dyn Gantry>> {
     match config.machine.kind {
         MachineKind::Simulated => {
+            let parked = Floor::new(config.machine.parked_x_m, config.machine.parked_y_m);
             let parameters = MachineParameters {
+                start: parked,
+                parked,
                 limits: config.machine.limits(),
                 ..MachineParameters::paper(config.machine.travel())
             };

@@ -50,6 +50,8 @@ pub enum Request {
     Machine(RequestKind, Option<String>),
     /// The person stands on the floor mark again (R15).
     ConfirmOrigin(PersonId),
+    /// A person whose headset is lost has left the arena: somebody saw it.
+    ConfirmLeft(PersonId),
     /// New priors by object index, each 0 to 1.
     SetPriors(Vec<(usize, f64)>),
     /// Another scene, whole; refused while homing.
@@ -142,18 +144,12 @@ impl Engine {
         match observation {
             Observation::PersonEntered(id) => {
                 if self.person(id).is_none() {
-                    self.persons.push(Person::new(id));
+                    self.persons.push(Person::new(id, now));
                     self.persons.sort_by_key(Person::id);
                     self.pending.push(EventKind::PersonEntered(id));
                 }
             }
-            Observation::PersonLeft(id) => {
-                let before = self.persons.len();
-                self.persons.retain(|p| p.id() != id);
-                if self.persons.len() < before {
-                    self.pending.push(EventKind::PersonLeft(id));
-                }
-            }
+            Observation::PersonLeft(id) => self.leave(id),
             Observation::Pose(id, sample) => {
                 if let Some(person) = self.persons.iter_mut().find(|p| p.id() == id) {
                     person.take_pose(sample, &self.scene, &self.parameters);
@@ -178,6 +174,7 @@ impl Engine {
         let answer = match request {
             Request::Machine(kind, reason) => self.request_machine(now, kind, reason.unwrap_or_default()),
             Request::ConfirmOrigin(id) => self.confirm_origin(id),
+            Request::ConfirmLeft(id) => self.confirm_left(now, id),
             Request::SetPriors(changes) => self.set_priors(&changes),
             Request::ActivateScene(scene) => self.activate(scene),
         };
@@ -196,6 +193,8 @@ impl Engine {
         self.progress_homing(now);
         let config = &self.config;
         let wish = self.following.weigh(&self.persons, &self.scene, &self.priors, now, &self.parameters);
+        // Somebody has come in and nobody knows where: hold until the first pose.
+        let wish = wish.filter(|_| !self.persons.iter().any(Person::is_unseen));
         let command = match self.mode {
             Mode::Disarmed | Mode::LatchedStop | Mode::Faulted => self.stop_and_release(now),
             Mode::Homing if self.may_home() => Vetted::home(now),
@@ -388,6 +387,27 @@ impl Engine {
                 person.confirm_origin();
                 Answer { outcome: Outcome::Accepted, detail: format!("person {} confirmed", id.0) }
             }
+        }
+    }
+
+    fn confirm_left(&mut self, now: Time, id: PersonId) -> Answer {
+        match self.person(id) {
+            None => refused(format!("person {} is not in the arena", id.0)),
+            Some(person) if person.lost(now, &self.parameters).is_none() => {
+                refused(format!("the headset of person {} is tracked: they are in the arena", id.0))
+            }
+            Some(_) => {
+                self.leave(id);
+                Answer { outcome: Outcome::Accepted, detail: format!("person {} has left", id.0) }
+            }
+        }
+    }
+
+    fn leave(&mut self, id: PersonId) {
+        let before = self.persons.len();
+        self.persons.retain(|p| p.id() != id);
+        if self.persons.len() < before {
+            self.pending.push(EventKind::PersonLeft(id));
         }
     }
 

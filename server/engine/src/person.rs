@@ -11,6 +11,7 @@ use crate::time::{Span, Time};
 #[derive(Debug, Clone)]
 pub struct Person {
     id: PersonId,
+    entered_at: Time,
     newest: Option<PoseSample>,
     velocity: Planar,
     awaits_confirmation: bool,
@@ -24,8 +25,8 @@ pub struct Person {
 /// Why a person cannot be relied on now.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Lost {
-    /// Entered, and no pose yet.
-    NoPoseYet,
+    /// Entered, and no pose yet after longer than a pose may be old, s.
+    NoPoseYet(f64),
     /// The newest pose is too old (R2), s.
     TooOld(f64),
     /// The headset does not know its place (R2).
@@ -40,9 +41,10 @@ pub enum Lost {
 
 impl Person {
     /// Somebody who has just come in.
-    pub fn new(id: PersonId) -> Self {
+    pub fn new(id: PersonId, entered_at: Time) -> Self {
         Self {
             id,
+            entered_at,
             newest: None,
             velocity: Planar::ZERO,
             awaits_confirmation: false,
@@ -149,7 +151,8 @@ impl Person {
             return Some(Lost::ClientGone);
         }
         let (Some(sample), Some(age)) = (self.newest, self.pose_age(now)) else {
-            return Some(Lost::NoPoseYet);
+            let waiting = now - self.entered_at;
+            return (waiting > parameters.pose_age).then_some(Lost::NoPoseYet(waiting.secs()));
         };
         if age > parameters.pose_age {
             Some(Lost::TooOld(age.secs()))
@@ -162,6 +165,11 @@ impl Person {
         } else {
             None
         }
+    }
+
+    /// They are in the arena and nobody knows where: no pose has come yet.
+    pub fn is_unseen(&self) -> bool {
+        self.newest.is_none()
     }
 
     /// This person as the separation rule sees them; none before the first pose.
@@ -213,7 +221,7 @@ mod tests {
     }
 
     fn fed(samples: &[PoseSample]) -> Person {
-        let mut person = Person::new(PersonId(1));
+        let mut person = Person::new(PersonId(1), Time::ZERO);
         for s in samples {
             person.take_pose(*s, &scene(), &Parameters::new(1.6));
         }
@@ -256,7 +264,7 @@ mod tests {
     #[test]
     fn near_an_object_has_hysteresis() {
         let near = |samples: &[PoseSample]| {
-            let mut person = Person::new(PersonId(1));
+            let mut person = Person::new(PersonId(1), Time::ZERO);
             for s in samples {
                 person.take_pose(*s, &scene(), &Parameters::new(1.6));
                 person.update_zones(s.taken_at, &Parameters::new(1.6));

@@ -25,7 +25,7 @@ pub enum FromDashboard {
         #[serde(default)]
         reason: Option<String>,
     },
-    /// Home, arm, disarm or reset; confirm a person on the floor mark.
+    /// Home, arm, disarm or reset; confirm a person on the floor mark, or gone.
     Request {
         /// Echoed in the answer.
         request_id: u32,
@@ -51,6 +51,8 @@ pub enum MachineRequest {
     Reset,
     /// The person with this id stands on the floor mark again (R15).
     ConfirmOrigin(u32),
+    /// The person with this id, whose headset is lost, has left the arena (R10).
+    ConfirmLeft(u32),
 }
 
 /// What the server says to a dashboard.

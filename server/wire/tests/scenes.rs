@@ -64,12 +64,12 @@ fn the_example_scenes_build() {
 fn the_examples_show_every_shape_and_the_papers_counts() {
     let texts = EXAMPLES.map(example);
     for kind in ["sphere", "box", "cylinder", "convex_mesh", "triangle_mesh"] {
-        assert!(texts[0].contains(&format!("\"{kind}\"")), "{kind}");
+        assert!(texts[1].contains(&format!("\"{kind}\"")), "{kind}");
     }
     for kind in ["circle", "polygon"] {
-        assert!(texts[2].contains(&format!("\"{kind}\"")), "{kind}");
+        assert!(texts[3].contains(&format!("\"{kind}\"")), "{kind}");
     }
-    let (paper, _) = parse_scene(texts[1].as_bytes()).expect("a good scene");
+    let (paper, _) = parse_scene(texts[2].as_bytes()).expect("a good scene");
     assert_eq!((paper.objects.len(), paper.props.len()), (7, 5));
 }
 

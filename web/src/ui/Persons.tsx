@@ -42,6 +42,17 @@ export function Persons(props: { readonly live: Live }): JSX.Element {
                     />
                   </div>
                 </Show>
+                <Show when={!person.tracked && !person.awaits_confirmation}>
+                  <button
+                    type="button"
+                    class="confirm"
+                    data-testid={`left-${person.id}`}
+                    disabled={!live()}
+                    onClick={() => void props.live.ask({ confirm_left: person.id }).then(setAnswer)}
+                  >
+                    I see that {person.name} has left the arena
+                  </button>
+                </Show>
                 <Show when={person.awaits_confirmation}>
                   <button
                     type="button"
@@ -58,7 +69,7 @@ export function Persons(props: { readonly live: Live }): JSX.Element {
           </For>
         </ul>
       </Show>
-      <Show when={answer()}>{(last) => <p class="answer" role="status">floor mark: {wordsOf(last())}</p>}</Show>
+      <Show when={answer()}>{(last) => <p class="answer" role="status">{wordsOf(last())}</p>}</Show>
     </section>
   );
 }

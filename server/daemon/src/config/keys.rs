@@ -90,6 +90,16 @@ pub fn all() -> Vec<Key> {
             Place::Rectangle(|c| &mut c.machine.travel_m),
         ),
         Key::new(
+            "machine.parked_x_m",
+            "Where the column is parked when the power comes on, x, m, room frame. Until it is homed, people are kept 0.3 m farther from there. The simulated machine starts there.",
+            Place::Number(-100.0..=100.0, |c| &mut c.machine.parked_x_m),
+        ),
+        Key::new(
+            "machine.parked_y_m",
+            "The same, y, m.",
+            Place::Number(-100.0..=100.0, |c| &mut c.machine.parked_y_m),
+        ),
+        Key::new(
             "machine.x.speed_mps",
             "Greatest speed along the long rail, m/s.",
             speed(|c| &mut c.machine.x.speed_mps),

@@ -50,6 +50,7 @@ pub fn routes() -> OpenApiRouter<Arc<App>> {
         .routes(routes!(reset))
         .routes(routes!(stop))
         .routes(routes!(confirm))
+        .routes(routes!(left))
 }
 
 /// The whole state now.
@@ -121,14 +122,28 @@ async fn confirm(
     author: Author,
     Path(id): Path<String>,
 ) -> Result<Json<Answered>, Problem> {
-    let person = id
-        .parse()
-        .ok()
-        .map(PersonId)
-        .filter(|person| app.persons.is_inside(*person))
-        .ok_or_else(|| Problem::not_found(format!("person {id} is not in the arena")))?;
+    let person = inside(&app, &id)?;
     let asker = Asker { by: "http", author: author.0 };
     answered(app.confirm_origin(&asker, person).await?)
+}
+
+/// The person, whose headset is lost, has left the arena (R10).
+#[utoipa::path(post, path = "/persons/{id}/left", tag = "machine", params(("id" = u32, Path, description = "The server's number of the person")),
+    responses((status = 200, body = Answered), (status = 404, description = "Nobody of this number is inside", body = Problem),
+        (status = 409, description = "Refused: the headset is tracked", body = Problem)))]
+async fn left(
+    State(app): State<Arc<App>>,
+    author: Author,
+    Path(id): Path<String>,
+) -> Result<Json<Answered>, Problem> {
+    let person = inside(&app, &id)?;
+    let asker = Asker { by: "http", author: author.0 };
+    answered(app.confirm_left(&asker, person).await?)
+}
+
+fn inside(app: &App, id: &str) -> Result<PersonId, Problem> {
+    let person = id.parse().ok().map(PersonId).filter(|person| app.persons.is_inside(*person));
+    person.ok_or_else(|| Problem::not_found(format!("person {id} is not in the arena")))
 }
 
 async fn ask(app: &App, author: Author, kind: RequestKind, body: &[u8]) -> Result<Json<Answered>, Problem> {

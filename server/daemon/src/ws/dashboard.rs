@@ -142,7 +142,12 @@ async fn ask(
         MachineRequest::ConfirmOrigin(person) if app.persons.is_inside(PersonId(person)) => {
             app.confirm_origin(asker, PersonId(person)).await
         }
-        MachineRequest::ConfirmOrigin(person) => return Err(format!("person {person} is not in the arena")),
+        MachineRequest::ConfirmLeft(person) if app.persons.is_inside(PersonId(person)) => {
+            app.confirm_left(asker, PersonId(person)).await
+        }
+        MachineRequest::ConfirmOrigin(person) | MachineRequest::ConfirmLeft(person) => {
+            return Err(format!("person {person} is not in the arena"));
+        }
     };
     done.map_err(|why| why.to_string())
 }

@@ -240,6 +240,35 @@ fn a_gone_client_is_lost_tracking_and_a_person_who_left_is_not() {
 }
 
 #[test]
+fn until_the_first_pose_of_somebody_new_the_column_holds() {
+    let mut room = Room::armed();
+    room.enter(2.0, 3.5, 0.0);
+    room.run(1.0);
+    assert!(room.report.velocity.norm() > 0.2);
+    room.engine.observe(room.now, Observation::PersonEntered(PersonId(2)));
+    room.run(0.48);
+    assert_eq!((room.engine.mode(), room.report.velocity), (Mode::Following, Planar::ZERO));
+    room.run(0.1);
+    assert_eq!(room.engine.mode(), Mode::ProtectiveStop);
+}
+
+#[test]
+fn somebody_who_has_left_without_a_word_can_be_said_to_have_left() {
+    let mut room = Room::armed();
+    room.enter(2.0, 3.5, 0.0);
+    room.run(0.5);
+    let said = |room: &mut Room| room.engine.request(room.now, Request::ConfirmLeft(VISITOR)).outcome;
+    assert_eq!(said(&mut room), Outcome::Refused, "the headset is tracked");
+    room.engine.observe(room.now, Observation::ClientGone(VISITOR));
+    room.head = None;
+    room.run(0.5);
+    assert_eq!(room.engine.mode(), Mode::ProtectiveStop);
+    assert_eq!(said(&mut room), Outcome::Accepted);
+    room.run(1.1);
+    assert_eq!(room.engine.mode(), Mode::Following);
+}
+
+#[test]
 fn a_silent_machine_is_a_fault_that_reset_leaves_only_when_it_answers() {
     let mut room = Room::armed();
     room.machine_answers = false;

@@ -354,7 +354,9 @@ pub fn clears_when(rule: RuleId) -> &'static str {
     match rule.0 {
         2 => "clears by itself 1 s after every headset is tracked again",
         9 => "clears by itself 1 s after the control loop keeps its deadlines again",
-        10 => "clears by itself 1 s after the VR client is back and its headset is tracked",
+        10 => {
+            "clears 1 s after the VR client is back, or after somebody confirms that the person has left the arena"
+        }
         15 => "clears 1 s after the game master confirms the person on the floor mark",
         8 => "reset, with a reason, once the controller answers again; then home and arm",
         1 => "move the column back by hand, then reset with a reason; then arm",
@@ -369,7 +371,9 @@ fn breach_if(breached: bool) -> RuleStatus {
 fn lost_in_words(person: &Person, now: Time, parameters: &Parameters) -> String {
     let id = person.id().0;
     match person.lost(now, parameters) {
-        Some(Lost::NoPoseYet) => format!("person {id} has entered and sent no pose yet"),
+        Some(Lost::NoPoseYet(secs)) => {
+            format!("person {id} entered {secs:.2} s ago and has sent no pose yet")
+        }
         Some(Lost::TooOld(secs)) => format!("the newest pose of person {id} is {secs:.2} s old"),
         Some(Lost::Untracked) => format!("the headset of person {id} does not know its place"),
         Some(Lost::NotWorn) => format!("person {id} took the headset off"),

@@ -46,11 +46,12 @@ proptest! {
 }
 
 #[test]
-fn before_homing_positions_count_from_power_on() {
+fn before_homing_positions_count_from_where_it_was_parked() {
     let mut course = standing_at(1.0, 2.0);
     let report = course.keep(Action::Hold, 0.1);
     assert_eq!(report.homing, Homing::NotHomed);
-    assert!(report.position.distance_m(Floor::default()) < 1e-3);
+    let parked = course.machine.parameters().parked;
+    assert!(report.position.distance_m(parked) < 1e-3, "it was told {parked:?}, and truly stands elsewhere");
 }
 
 #[test]

@@ -146,6 +146,7 @@ impl MachineRequest {
             Self::Disarm => Request::Machine(RequestKind::Disarm, reason),
             Self::Reset => Request::Machine(RequestKind::Reset, reason),
             Self::ConfirmOrigin(person) => Request::ConfirmOrigin(PersonId(*person)),
+            Self::ConfirmLeft(person) => Request::ConfirmLeft(PersonId(*person)),
         }
     }
 }
