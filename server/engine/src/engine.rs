@@ -4,6 +4,7 @@
 //! the mode says what the machine does; in `following` motion proposes and safety disposes.
 
 mod following;
+mod requests;
 mod view;
 
 use std::sync::Arc;
@@ -11,7 +12,7 @@ use std::sync::Arc;
 use crate::event::{Event, EventKind};
 use crate::intention::RuleName;
 use crate::machine::{Drive, Homing, Limits, MachineReport, Travel};
-use crate::mode::{self, Conditions, Mode, RequestKind, Response};
+use crate::mode::Mode;
 use crate::observation::{Observation, PersonId};
 use crate::person::Person;
 use crate::safety::governor::Governor;
@@ -21,10 +22,10 @@ use crate::safety::separation::{Separation, Threat};
 use crate::safety::supervisor::{Demand, Supervisor, Watched, clears_when};
 use crate::safety::vetted::Vetted;
 use crate::scene::Scene;
-use crate::scene::footprint::KeepOut;
 use crate::snapshot::{RuleId, StopCause};
 use crate::time::{Span, Time};
 use following::Following;
+pub use requests::{Answer, Outcome, Request};
 
 /// What the engine is built with. Right once built.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,41 +42,6 @@ pub struct EngineConfig {
     pub v_h_mps: f64,
     /// Start latched, with this reason: the last run ended in a latched stop.
     pub latched_because: Option<String>,
-}
-
-/// What somebody asks.
-#[derive(Debug, Clone)]
-pub enum Request {
-    /// Home, arm, disarm, stop, reset, with the reason given.
-    Machine(RequestKind, Option<String>),
-    /// The person stands on the floor mark again (R15).
-    ConfirmOrigin(PersonId),
-    /// A person whose headset is lost has left the arena: somebody saw it.
-    ConfirmLeft(PersonId),
-    /// New priors by object index, each 0 to 1.
-    SetPriors(Vec<(usize, f64)>),
-    /// Another scene, whole; refused while homing.
-    ActivateScene(Arc<Scene>),
-}
-
-/// What came of a request.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Answer {
-    /// Accepted, already so, or refused.
-    pub outcome: Outcome,
-    /// In plain words.
-    pub detail: String,
-}
-
-/// What came of a request, in one word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
-    /// Done, or begun.
-    Accepted,
-    /// It was so already.
-    AlreadySo,
-    /// Not now.
-    Refused,
 }
 
 /// Every decision about motion, for one machine and its arena.
@@ -167,19 +133,6 @@ impl Engine {
             Observation::DeadlineMet => self.supervisor.deadline(true),
         }
         self.record(now);
-    }
-
-    /// Answer a request at once.
-    pub fn request(&mut self, now: Time, request: Request) -> Answer {
-        let answer = match request {
-            Request::Machine(kind, reason) => self.request_machine(now, kind, reason.unwrap_or_default()),
-            Request::ConfirmOrigin(id) => self.confirm_origin(id),
-            Request::ConfirmLeft(id) => self.confirm_left(now, id),
-            Request::SetPriors(changes) => self.set_priors(&changes),
-            Request::ActivateScene(scene) => self.activate(scene),
-        };
-        self.record(now);
-        answer
     }
 
     /// Decide what the machine does until the next step.
@@ -345,111 +298,6 @@ impl Engine {
         })
     }
 
-    fn request_machine(&mut self, now: Time, kind: RequestKind, reason: String) -> Answer {
-        match mode::respond(self.mode, kind, &self.conditions()) {
-            Response::AlreadySo(detail) => Answer { outcome: Outcome::AlreadySo, detail: detail.to_owned() },
-            Response::Refuse(detail) => Answer { outcome: Outcome::Refused, detail },
-            Response::Go(to) => {
-                match kind {
-                    RequestKind::Stop => {
-                        let why = if reason.is_empty() { "no reason given" } else { &reason };
-                        self.latch(RuleId(4), format!("software stop: {why}"), now);
-                    }
-                    RequestKind::Home | RequestKind::Arm => {
-                        self.arena_confirmed_clear = self.persons.is_empty();
-                        self.enter(to, kind.name(), now);
-                    }
-                    RequestKind::Disarm => self.enter(to, "disarmed", now),
-                    RequestKind::Reset => {
-                        self.supervisor.software_stop(false, "not pressed", now, &mut self.pending);
-                        self.enter(to, &format!("reset: {reason}"), now);
-                    }
-                }
-                Answer { outcome: Outcome::Accepted, detail: format!("now {}", self.mode.name()) }
-            }
-        }
-    }
-
-    fn conditions(&self) -> Conditions {
-        Conditions {
-            homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
-            cause_still_there: self.supervisor.cause_still_there(),
-        }
-    }
-
-    fn confirm_origin(&mut self, id: PersonId) -> Answer {
-        match self.persons.iter_mut().find(|p| p.id() == id) {
-            None => refused(format!("person {} is not in the arena", id.0)),
-            Some(person) if !person.awaits_confirmation() => {
-                Answer { outcome: Outcome::AlreadySo, detail: "this person's origin is confirmed".to_owned() }
-            }
-            Some(person) => {
-                person.confirm_origin();
-                Answer { outcome: Outcome::Accepted, detail: format!("person {} confirmed", id.0) }
-            }
-        }
-    }
-
-    fn confirm_left(&mut self, now: Time, id: PersonId) -> Answer {
-        match self.person(id) {
-            None => refused(format!("person {} is not in the arena", id.0)),
-            Some(person) if person.lost(now, &self.parameters).is_none() => {
-                refused(format!("the headset of person {} is tracked: they are in the arena", id.0))
-            }
-            Some(_) => {
-                self.leave(id);
-                Answer { outcome: Outcome::Accepted, detail: format!("person {} has left", id.0) }
-            }
-        }
-    }
-
-    fn leave(&mut self, id: PersonId) {
-        let before = self.persons.len();
-        self.persons.retain(|p| p.id() != id);
-        if self.persons.len() < before {
-            self.pending.push(EventKind::PersonLeft(id));
-        }
-    }
-
-    fn set_priors(&mut self, changes: &[(usize, f64)]) -> Answer {
-        for (index, prior) in changes {
-            if *index >= self.priors.len() {
-                return refused(format!("object {index} of {} objects", self.priors.len()));
-            }
-            if !(0.0..=1.0).contains(prior) {
-                return refused(format!("prior {prior} of object {index}: expected 0 to 1"));
-            }
-        }
-        for (index, prior) in changes {
-            self.priors[*index] = *prior;
-        }
-        Answer { outcome: Outcome::Accepted, detail: format!("{} priors set", changes.len()) }
-    }
-
-    fn activate(&mut self, scene: Arc<Scene>) -> Answer {
-        if self.mode == Mode::Homing {
-            return refused("homing: wait until it is done".to_owned());
-        }
-        if let Some(report) = self.report.filter(|r| r.homing == Homing::Homed) {
-            // Inside a keep-out's distance nothing may move, so the column would be shut in.
-            let shuts_in =
-                |k: &KeepOut| k.distance_m(scene.footprint(), report.position) < self.parameters.radius_m;
-            if let Some(index) = scene.keep_outs().iter().position(shuts_in) {
-                let (id, r) = (&scene.spec().keep_outs[index].id, self.parameters.radius_m);
-                return refused(format!(
-                    "the column stands within {r} m of the keep-out shape \"{id}\": move it away first"
-                ));
-            }
-        }
-        self.priors = scene.spec().objects.iter().map(|o| o.prior).collect();
-        self.scene = scene;
-        self.following.forget_visitors();
-        for person in &mut self.persons {
-            person.place_among(&self.scene);
-        }
-        Answer { outcome: Outcome::Accepted, detail: "scene activated".to_owned() }
-    }
-
     fn latch(&mut self, rule: RuleId, reason: String, now: Time) {
         if rule == RuleId(4) {
             self.supervisor.software_stop(true, &reason, now, &mut self.pending);
@@ -494,10 +342,6 @@ impl Engine {
 
 fn governor_command(governor: Option<&Governor>, now: Time, valid_for: Span) -> Vetted {
     governor.map_or_else(|| Vetted::hold(now), |g| g.command(now, valid_for))
-}
-
-fn refused(detail: String) -> Answer {
-    Answer { outcome: Outcome::Refused, detail }
 }
 
 /// Slower than this the machine rests, as measured, m/s.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::frames::{Floor, Planar, Point, Pose};
+use crate::mode::RequestKind;
 use crate::observation::PoseSample;
 use crate::safety::vetted::Action;
 use crate::scene::{ObjectSpec, SceneSpec, Shape};
