@@ -28,6 +28,8 @@ pub enum Command {
     Check(Check),
     /// Play a person as a VR client: recorded with --trace, else made up.
     Visitor(Visitor),
+    /// Ask a running server whether it is ready; exit code 2 if it is not.
+    Health(Health),
     /// Print every configuration key with its default and its meaning.
     Config,
 }
@@ -57,6 +59,14 @@ pub struct Serve {
 pub struct Check {
     /// The scene.
     pub scene: PathBuf,
+}
+
+/// Ask a running server.
+#[derive(Debug, Clone, Args)]
+pub struct Health {
+    /// The server.
+    #[arg(long, default_value = "http://127.0.0.1:7878")]
+    pub url: String,
 }
 
 /// Play a person.

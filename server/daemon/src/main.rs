@@ -2,10 +2,11 @@
 
 use std::io::Write;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use anyhow::Context;
 use clap::Parser;
-use covr_server::cli::{Check, Cli, Command, Serve, Visitor};
+use covr_server::cli::{Check, Cli, Command, Health, Serve, Visitor};
 use covr_server::config::{self, Config};
 use covr_server::serve::{Reach, Server, stop_at_signal, told_by_signal};
 use covr_server::{logs, visitor};
@@ -17,6 +18,7 @@ fn main() -> ExitCode {
         Command::Serve(options) => serve(options),
         Command::Check(options) => return check(&options),
         Command::Visitor(options) => visit(options),
+        Command::Health(options) => health(&options),
         Command::Config => print(&config::reference(&Config::default())),
     };
     match done {
@@ -50,6 +52,16 @@ fn visit(options: Visitor) -> anyhow::Result<()> {
             _ = told_by_signal() => Ok(()),
         }
     })
+}
+
+fn health(options: &Health) -> anyhow::Result<()> {
+    let url = format!("{}/readyz", options.url.trim_end_matches('/'));
+    let answer = runtime()?.block_on(async {
+        let client = reqwest::Client::builder().timeout(LONGEST_HEALTH_CALL).build()?;
+        client.get(&url).send().await?.error_for_status()
+    });
+    answer.with_context(|| format!("{url}: not ready"))?;
+    print("ready\n")
 }
 
 fn check(options: &Check) -> ExitCode {
@@ -92,6 +104,8 @@ fn complain(text: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
+/// A server that does not answer within this is not ready.
+const LONGEST_HEALTH_CALL: Duration = Duration::from_secs(2);
 /// A scene or a file is not good.
 const INVALID: u8 = 1;
 /// The command could not do its work.

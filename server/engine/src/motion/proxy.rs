@@ -99,9 +99,9 @@ const TIE_PER_SEC: f64 = 6.0;
 /// The ball leads the column by no more than this, m.
 const LEASH_M: f64 = 0.25;
 /// From here on a bump is felt, m.
-const INFLUENCE_M: f64 = 0.6;
+const INFLUENCE_M: f64 = 0.8;
 /// A metre of gap allows this much speed inward; a metre inside pushes as fast outward, 1/s.
-const REPULSION_PER_SEC: f64 = 2.0;
+const REPULSION_PER_SEC: f64 = 1.5;
 /// The share of the blocked motion that goes along the rim instead.
 const SLIDE: f64 = 0.8;
 
