@@ -16,7 +16,7 @@ interface Outcome {
 }
 
 
-it("brings the column to the object before the hand in at least half of ten reaches", { timeout: 600_000 }, async () => {
+it("brings the column to the object before the hand in at least half of ten reaches", { timeout: 900_000 }, async () => {
   const reaches = await recordedReaches("fixed", REACHES);
   const size = reaches?.[0] === undefined ? 4 : reaches[0].arena.x[1] - reaches[0].arena.x[0];
   const travel = `[0.0, 0.0, ${size.toFixed(1)}, ${size.toFixed(1)}]`;
@@ -36,7 +36,7 @@ it("brings the column to the object before the hand in at least half of ten reac
     server.visitor("--trace", file);
     outcomes = () => recordedOutcomes(watched, reaches);
   }
-  const ten = await until(`${REACHES} reaches`, 540_000, () => {
+  const ten = await until(`${REACHES} reaches`, 840_000, () => {
     const found = outcomes();
     return found.length >= REACHES ? found.slice(0, REACHES) : null;
   });
