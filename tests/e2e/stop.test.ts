@@ -50,6 +50,17 @@ describe("the stop in the page", () => {
     expect((await server.state()).mode).toBe("latched_stop");
   });
 
+  it("is inside the window on a laptop and on a tablet, upright and on its side", async () => {
+    for (const [width, height] of [[1366, 768], [1180, 820], [820, 1180]] as const) {
+      await dashboard.page.setViewportSize({ width, height });
+      const box = await dashboard.page.getByTestId("stop").boundingBox();
+      if (box === null) throw new Error(`no stop at ${width} x ${height}`);
+      expect(box.x >= 0 && box.y >= 0, `${width} x ${height}`).toBe(true);
+      expect(box.x + box.width, `${width} x ${height}`).toBeLessThanOrEqual(width);
+      expect(box.y + box.height, `${width} x ${height}`).toBeLessThanOrEqual(height);
+    }
+  });
+
   it("stops over HTTP after the WebSocket was cut, while the page says that it is stale", async () => {
     cutter.fate = "cut";
     await dashboard.page.getByTestId("stale-banner").waitFor({ timeout: 5_000 });

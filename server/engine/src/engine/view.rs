@@ -2,7 +2,7 @@
 
 use super::Engine;
 use crate::frames::{Floor, Planar};
-use crate::machine::Homing;
+use crate::machine::{Homing, Limits};
 use crate::mode::{self, RequestKind, Response};
 use crate::motion::travel_secs;
 use crate::person::Person;
@@ -103,7 +103,7 @@ impl Engine {
                     probability: if total > 0.0 { weight / total } else { 0.0 },
                     prior: self.priors[i],
                     column_place: object.column_place(),
-                    arrival_secs: travel_secs(from, object.column_place(), &self.config.limits),
+                    arrival_secs: arrival_secs(from, object.column_place(), &self.config.limits),
                     touch_secs,
                 }
             })
@@ -111,6 +111,13 @@ impl Engine {
     }
 }
 
+/// From now until the column could stand there; at once where it stands already.
+fn arrival_secs(from: Floor, place: Floor, limits: &Limits) -> f64 {
+    if from.distance_m(place) < IN_PLACE_M { 0.0 } else { travel_secs(from, place, limits) }
+}
+
+/// Nearer than this the column is there: the following error of a healthy machine, m.
+const IN_PLACE_M: f64 = 0.01;
 /// The head is this far from a surface when the hand is at it (recorded people: 0.6 m to the object's centre), m.
 const ARM_M: f64 = 0.5;
 /// Somebody who stands may walk off at once: the 95th percentile of recorded people's speed, m/s.
