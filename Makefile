@@ -3,7 +3,11 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := help
 # Recorded people, where there are some; without them the synthetic visitor walks.
 COVR_TRACES ?= $(wildcard ../shared/traces)
-export COVR_TRACES
+ifneq ($(COVR_TRACES),)
+export COVR_TRACES := $(abspath $(COVR_TRACES))
+else
+unexport COVR_TRACES
+endif
 # The binary that the browser tests start.
 export COVR_BIN ?= $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/debug/covr
 # Where `make run` listens.
