@@ -137,7 +137,12 @@ fn spec(random: &mut Random, arena: Travel, travel: Travel) -> SceneSpec {
         })
         .collect();
     let keep_outs = (0..random.below(4)).map(|i| {
-        let centre = somewhere(random, arena);
+        // Homing needs its corner: nobody furnishes it.
+        let farther = Travel { min: arena.min + Planar::new(1.5, 1.5), max: arena.max };
+        let among = if random.chance(0.5) { farther } else { arena };
+        let centre = somewhere(random, among);
+        let too_near = centre.distance_m(arena.min) < 2.0;
+        let centre = if too_near { arena.max - Planar::new(0.5, 0.5) } else { centre };
         let size = random.between(0.1, 0.5);
         let shape = if random.chance(0.5) {
             KeepOutShape::Circle { centre, radius_m: size }

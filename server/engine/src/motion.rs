@@ -17,7 +17,7 @@ pub struct Proposals {
 }
 
 impl Proposals {
-    /// Try what the proxy wants, or the way around whoever stands between; then slower and aside; at last a retreat.
+    /// Try what the proxy wants, or the way around whoever stands between; then slower and aside.
     ///
     /// `speed_cap_mps` binds every proposal. The side taken last is preferred, so that a detour does not dither.
     pub fn fill(
@@ -54,9 +54,6 @@ impl Proposals {
                 }
             }
         }
-        if left_m > IN_PLACE_M {
-            self.velocities.extend(retreat(column, threats).map(|v| v.capped(speed_cap_mps)));
-        }
     }
 
     /// The proposals, best first.
@@ -90,13 +87,6 @@ pub fn travel_secs(from: Floor, to: Floor, limits: &Limits) -> f64 {
     axis((to.x - from.x).abs(), &limits.x).max(axis((to.y - from.y).abs(), &limits.y))
 }
 
-/// Directly away from the nearest person within reach of the column.
-fn retreat(column: Floor, threats: &[Threat]) -> Option<Planar> {
-    let near = threats.iter().filter(|t| t.head.distance_m(column) < RETREAT_WITHIN_M);
-    let nearest = near.min_by(|a, b| a.head.distance_m(column).total_cmp(&b.head.distance_m(column)))?;
-    (column - nearest.head).unit().map(|away| away * RETREAT_SPEED_MPS)
-}
-
 /// Angle from the way, degrees, and share of the cruising speed; by progress made, best first.
 const FAN: [(f64, f64); 17] = [
     (0.0, 1.0),
@@ -123,13 +113,6 @@ const CRUISE_MPS: f64 = 1.1;
 const ASIDE_MPS: f64 = 0.6;
 /// A metre from a wall leaves this much speed towards it, 1/s.
 const WALL_PER_SEC: f64 = 2.5;
-/// Closer than this to where it is wanted, the column stays, m.
-const IN_PLACE_M: f64 = 0.1;
-/// Somebody nearer than this is worth leaving when the column cannot go where it is wanted, m.
-const RETREAT_WITHIN_M: f64 = 1.0;
-/// Within the separation rule's 0.3 m/s, with room for what a machine overshoots.
-const RETREAT_SPEED_MPS: f64 = 0.22;
-
 #[cfg(test)]
 mod tests {
     use super::*;

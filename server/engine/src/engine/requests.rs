@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::Engine;
 use crate::event::EventKind;
+use crate::frames::Floor;
 use crate::machine::Homing;
 use crate::mode::{self, Conditions, Mode, RequestKind, Response};
 use crate::observation::PersonId;
@@ -67,6 +68,7 @@ impl Engine {
         match mode::respond(self.mode, kind, &self.conditions()) {
             Response::AlreadySo(detail) => Answer { outcome: Outcome::AlreadySo, detail: detail.to_owned() },
             Response::Refuse(detail) => Answer { outcome: Outcome::Refused, detail },
+            Response::Go(Mode::Homing) if let Some(detail) = self.shape_on_the_way_home() => refused(detail),
             Response::Go(to) => {
                 match kind {
                     RequestKind::Stop => {
@@ -93,6 +95,29 @@ impl Engine {
             homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
             cause_still_there: self.supervisor.cause_still_there(),
         }
+    }
+
+    /// The keep-out shape, in words, that homing would come too near: straight to the corner, each axis until its switch.
+    fn shape_on_the_way_home(&self) -> Option<String> {
+        let from = self.report?.position;
+        let corner = self.config.travel.min;
+        let farthest = (from.x - corner.x).max(from.y - corner.y).max(0.0);
+        let steps = (farthest / HOMING_LOOK_M).ceil() as u32 + 1;
+        let on_the_way = (0..=steps).map(|k| {
+            let gone = f64::from(k) * HOMING_LOOK_M;
+            Floor::new((from.x - gone).max(corner.x), (from.y - gone).max(corner.y))
+        });
+        let needed = self.parameters.radius_m + HOMING_MARGIN_M;
+        for centre in on_the_way {
+            let near = |k: &KeepOut| k.distance_m(self.scene.footprint(), centre) < needed;
+            if let Some(index) = self.scene.keep_outs().iter().position(near) {
+                let id = &self.scene.spec().keep_outs[index].id;
+                return Some(format!(
+                    "homing would come within {needed:.2} m of the keep-out shape \"{id}\""
+                ));
+            }
+        }
+        None
     }
 
     fn confirm_origin(&mut self, id: PersonId) -> Answer {
@@ -172,3 +197,8 @@ impl Engine {
 fn refused(detail: String) -> Answer {
     Answer { outcome: Outcome::Refused, detail }
 }
+
+/// Homing's course is looked at this often, m.
+const HOMING_LOOK_M: f64 = 0.02;
+/// Homing backs off and comes back by about this much, m.
+const HOMING_MARGIN_M: f64 = 0.06;

@@ -5,7 +5,7 @@ use crate::frames::{Floor, Planar, Point, Pose};
 use crate::mode::RequestKind;
 use crate::observation::PoseSample;
 use crate::safety::vetted::Action;
-use crate::scene::{ObjectSpec, SceneSpec, Shape};
+use crate::scene::{KeepOutShape, KeepOutSpec, ObjectSpec, SceneSpec, Shape};
 use nalgebra::UnitQuaternion;
 use proptest::prelude::*;
 
@@ -316,6 +316,20 @@ fn three_missed_deadlines_in_a_row_are_a_protective_stop() {
     }
     room.step();
     assert_eq!(room.engine.snapshot(room.now).stop.unwrap().rule, RuleId(9));
+}
+
+#[test]
+fn homing_into_a_keep_out_shape_is_refused_by_its_name() {
+    let mut room = Room::new(None);
+    room.run(0.1);
+    let mut spec = room.engine.scene().spec().clone();
+    let shape = KeepOutShape::Circle { centre: Floor::new(0.9, 0.1), radius_m: 0.2 };
+    spec.keep_outs.push(KeepOutSpec { id: "sofa".into(), shape });
+    let scene = Arc::new(Scene::build(spec).unwrap());
+    assert_eq!(room.engine.request(room.now, Request::ActivateScene(scene)).outcome, Outcome::Accepted);
+    let answer = room.ask(RequestKind::Home);
+    assert_eq!(answer.outcome, Outcome::Refused);
+    assert!(answer.detail.contains("sofa"), "{}", answer.detail);
 }
 
 #[test]

@@ -225,6 +225,15 @@ impl BrakePath {
         Self { x: AxisPath::brake(state.x, &limits.x), y: AxisPath::brake(state.y, &limits.y) }
     }
 
+    /// The brake at the limits, begun now, with no bound on jerk: as hard as it may.
+    pub fn abrupt(state: &State, limits: &Limits) -> Self {
+        let axis = |start: AxisState, limits: &AxisLimits| {
+            let start = AxisState { a: 0.0, ..start };
+            AxisPath::build(start, None, 0.0, limits.braking_mps2, ABRUPT_MPS3)
+        };
+        Self { x: axis(state.x, &limits.x), y: axis(state.y, &limits.y) }
+    }
+
     /// The centre `s` seconds from now.
     pub fn centre(&self, s: f64) -> Floor {
         Floor::new(self.x.at(s).p, self.y.at(s).p)
@@ -254,6 +263,8 @@ impl BrakePath {
     }
 }
 
+/// So much jerk is as good as none bounded, m/s3.
+const ABRUPT_MPS3: f64 = 1e6;
 /// Slower than this an axis has no heading of its own, m/s.
 const STILL_MPS: f64 = 1e-4;
 /// So slow, an axis may take up the other direction at once, m/s.

@@ -158,7 +158,8 @@ impl SeparationWatch {
         let brake_secs = |speed: f64, own: &covr_engine::machine::AxisLimits| {
             let fastest =
                 (speed.abs() + own.acceleration_mps2 * reaction.secs()).min(own.speed_mps.max(speed.abs()));
-            fastest / own.braking_mps2
+            // a_b is that of a jerk-limited stop: the ramps of the deceleration take their time too.
+            fastest / own.braking_mps2 + own.braking_mps2 / own.jerk_mps3
         };
         let longest = brake_secs(velocity.x, &rules.limits.x).max(brake_secs(velocity.y, &rules.limits.y));
         Scales {
@@ -287,6 +288,9 @@ impl SeparationWatch {
     }
 }
 
+/// A smaller rise of the speed cannot be told from none, m/s.
+const RISE_MPS: f64 = 0.01;
+
 impl Grace {
     /// Within the reaction anything; after it the column must brake.
     fn permits(&mut self, scales: &Scales) -> bool {
@@ -294,7 +298,7 @@ impl Grace {
             return true;
         }
         let lowest = self.lowest_mps.get_or_insert(scales.speed_before_mps);
-        let brakes = scales.speed_mps <= *lowest + MOVING_MPS;
+        let brakes = scales.speed_mps <= *lowest + RISE_MPS;
         *lowest = lowest.min(scales.speed_mps);
         brakes
     }

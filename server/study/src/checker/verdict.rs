@@ -11,7 +11,7 @@ use super::{Axis, Motion, Quantity, Subject, Track};
 pub struct Verdict {
     /// Ticks checked.
     pub ticks: u64,
-    /// Ticks with the column faster than 0.01 m/s.
+    /// Ticks with the column faster than 0.02 m/s.
     pub moving_ticks: u64,
     /// Ticks and subjects that broke the separation rule.
     pub separation: u64,
