@@ -155,7 +155,9 @@ impl Engine {
             Mode::ProtectiveStop if self.resumes == Mode::Homing => Vetted::hold(now),
             Mode::Ready | Mode::Following | Mode::ProtectiveStop => {
                 let Some(report) = self.report else { return Vetted::hold(now) };
-                let governor = self.governor.get_or_insert_with(|| Governor::at_rest(report.position));
+                let governor = self
+                    .governor
+                    .get_or_insert_with(|| Governor::taking_over(report.position, report.velocity));
                 let separation = Separation {
                     scene: &self.scene,
                     limits: &config.limits,

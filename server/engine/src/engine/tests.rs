@@ -182,6 +182,23 @@ fn stop_brakes_then_releases_and_stays() {
 }
 
 #[test]
+fn armed_while_it_still_moves_the_machine_is_taken_over_in_its_motion() {
+    let mut room = Room::armed();
+    room.enter(2.0, 3.5, 0.0);
+    room.run(1.0);
+    room.ask(RequestKind::Disarm);
+    let (place, velocity) = (room.report.position, room.report.velocity);
+    assert!(velocity.norm() > 0.2);
+    room.step();
+    // The drive has not stopped yet.
+    room.report.velocity = velocity * 0.9;
+    room.ask(RequestKind::Arm);
+    let Action::Track(setpoint) = room.step().action() else { panic!("it is armed") };
+    assert!((setpoint.velocity - velocity * 0.9).norm() < 0.05, "{setpoint:?} against {velocity:?}");
+    assert!(setpoint.position.distance_m(place) < 0.01);
+}
+
+#[test]
 fn a_brake_that_does_not_bite_is_let_go() {
     let mut room = Room::armed();
     room.enter(2.0, 3.5, 0.0);

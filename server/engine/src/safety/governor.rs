@@ -27,9 +27,11 @@ pub struct Choice {
 }
 
 impl Governor {
-    /// At rest where the machine stands.
-    pub fn at_rest(place: Floor) -> Self {
-        Self { commanded: State::at_rest(place) }
+    /// Take the machine over as it is measured: where it stands, or in its motion if it was armed while it still moved.
+    /// To command rest to a moving machine would have it run past and come back, certified by nobody.
+    pub fn taking_over(place: Floor, velocity: Planar) -> Self {
+        let rests = velocity.norm() < MEASURED_REST_MPS;
+        Self { commanded: State::moving(place, if rests { Planar::ZERO } else { velocity }) }
     }
 
     /// Move on by one period with the first allowed of `proposals` (velocities, best first), else brake.
@@ -107,5 +109,7 @@ impl Governor {
     }
 }
 
+/// A machine at rest measures less than this, m/s.
+const MEASURED_REST_MPS: f64 = 0.02;
 /// The slower axis keeps at least this share of its braking, so that both come to rest.
 const LEAST_SHARE: f64 = 0.1;
