@@ -228,3 +228,20 @@ async fn no_message_of_a_client_moves_a_machine_that_is_not_armed() {
     assert_eq!(published.snapshot.mode, Mode::Disarmed);
     assert!(published.snapshot.column.velocity.norm() < 1e-6);
 }
+
+#[tokio::test]
+async fn somebody_whose_client_is_gone_can_be_said_to_have_left() {
+    let server = TestServer::start().await;
+    let mut client = VrClient::greeted(&server.host, "quest", Encoding::Json).await;
+    client.enter("ada").await;
+    client.pose("ada", 0.5, 0.5).await;
+    let there =
+        server.published("ada", SOON, |p| p.snapshot.persons.iter().any(|person| person.tracked)).await;
+    let left = format!("/api/v1/persons/{}/left", there.snapshot.persons[0].person.0);
+    drop(client);
+    server.published("ada is lost", SOON, |p| p.snapshot.persons.iter().all(|person| !person.tracked)).await;
+    server.good("POST", &left, None).await;
+    server.published("ada has left", SOON, |p| p.snapshot.persons.is_empty()).await;
+    let problem = server.refused(404, "POST", &left, None).await;
+    assert!(problem.detail.contains("not in the arena"), "{problem:?}");
+}

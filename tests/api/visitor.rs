@@ -81,3 +81,16 @@ async fn a_recorded_visitor_brings_the_scene_of_its_targets() {
     assert_eq!(scenes.as_array().unwrap().len(), 2, "the same targets are stored once: {scenes}");
     runs.abort();
 }
+
+#[tokio::test]
+async fn a_visitor_of_a_stopped_machine_walks_and_leaves_the_stop_to_people() {
+    let server = TestServer::start().await;
+    server.good("POST", "/api/v1/stop", None).await;
+    let runs = tokio::spawn(visitor::run(Visitor { arm: true, ..options(&server) }));
+    let seen = server
+        .published("the visitor is there", SOON, |p| p.snapshot.persons.iter().any(|person| person.tracked))
+        .await;
+    assert_eq!(seen.snapshot.mode, Mode::LatchedStop);
+    assert!(!runs.is_finished());
+    runs.abort();
+}

@@ -43,11 +43,9 @@ async fn visit(
     api: &Api,
     program: Option<&mut Program>,
 ) -> Result<std::convert::Infallible, anyhow::Error> {
-    if options.arm {
-        api.home_simulated_machine().await?;
-    }
+    let ready = options.arm && api.home_simulated_machine().await?;
     let mut headset = Headset::connect(&options.url, &options.name).await?;
-    if options.arm {
+    if ready {
         api.arm().await?;
     }
     match program {

@@ -41,8 +41,9 @@ impl Api {
         }
     }
 
-    /// Home the machine, if it is the simulated one, and wait until it is ready.
-    pub async fn home_simulated_machine(&self) -> anyhow::Result<()> {
+    /// Home the machine, if it is the simulated one, and wait until it is ready. False: it is in a stop that only
+    /// somebody at the dashboard ends.
+    pub async fn home_simulated_machine(&self) -> anyhow::Result<bool> {
         let machine = self.machine().await?;
         ensure!(
             machine == "simulated",
@@ -53,7 +54,7 @@ impl Api {
         loop {
             let state = self.state().await?;
             match state.mode {
-                Mode::Ready | Mode::Following | Mode::ProtectiveStop => return Ok(()),
+                Mode::Ready | Mode::Following | Mode::ProtectiveStop => return Ok(true),
                 Mode::Disarmed if !asked => {
                     self.post("home").await?;
                     asked = true;
@@ -61,11 +62,12 @@ impl Api {
                 Mode::Disarmed | Mode::Homing if Instant::now() < deadline => {
                     tokio::time::sleep(BETWEEN_TRIES).await
                 }
-                mode => {
-                    let why =
-                        state.stop.map(|stop| format!("{}: {}", stop.rule, stop.reason)).unwrap_or_default();
-                    bail!("the machine does not get ready by itself: {mode:?} {why}");
+                Mode::LatchedStop | Mode::Faulted => {
+                    let why = state.stop.map_or_else(String::new, |stop| stop.reason);
+                    tracing::warn!(why, "the machine is stopped: reset, home and arm it on the dashboard");
+                    return Ok(false);
                 }
+                mode => bail!("the machine did not get ready: it is still {mode:?}"),
             }
         }
     }
