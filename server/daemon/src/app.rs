@@ -94,7 +94,7 @@ impl App {
         reason: Option<String>,
         received_at: Instant,
     ) -> Result<Duration, NotReached> {
-        let words = reason.clone().unwrap_or_else(|| format!("software stop by {}", asker.author));
+        let words = reason.clone().unwrap_or_else(|| format!("pressed by {}", asker.author));
         let reached = self.control.stop(lane, words, received_at).await;
         let micros = reached.as_ref().ok().map(|d| d.as_micros() as u64);
         let summary = match micros {
