@@ -113,3 +113,101 @@ impl Governor {
 const MEASURED_REST_MPS: f64 = 0.02;
 /// The slower axis keeps at least this share of its braking, so that both come to rest.
 const LEAST_SHARE: f64 = 0.1;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frames::Point;
+    use crate::machine::Travel;
+    use crate::observation::PersonId;
+    use crate::safety::parameters::Parameters;
+    use crate::safety::separation::Threat;
+    use crate::scene::{ObjectSpec, Scene, SceneSpec, Shape};
+    use proptest::prelude::*;
+
+    const TRAVEL: Travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
+    const PERIOD: Span = Span::from_millis(4);
+
+    fn scene() -> Scene {
+        let ball = ObjectSpec {
+            id: "ball".into(),
+            position: Point::new(0.5, 0.5, 1.0),
+            yaw_rad: 0.0,
+            shape: Shape::Sphere { radius_m: 0.1 },
+            prop: None,
+            prior: 1.0,
+            enabled: true,
+        };
+        Scene::build(SceneSpec::open(TRAVEL, vec![ball])).unwrap()
+    }
+
+    fn velocity() -> impl Strategy<Value = Planar> {
+        (-1.5..1.5f64, -1.5..1.5f64).prop_map(|(x, y)| Planar::new(x, y))
+    }
+
+    proptest! {
+        /// Whatever is proposed: limits are kept from step to step, and what was taken is certified.
+        #[test]
+        fn whatever_is_proposed_limits_are_kept_and_what_is_taken_is_certified(
+            wishes in prop::collection::vec(prop::collection::vec(velocity(), 1..4), 1..40),
+            (hx, hy) in (0.0..4.0f64, 0.0..4.0f64),
+        ) {
+            let (scene, parameters) = (scene(), Parameters::new(1.6));
+            let threats = [Threat {
+                person: PersonId(1),
+                head: Floor::new(hx, hy),
+                velocity: Planar::ZERO,
+                age_secs: 0.03,
+                near_object: false,
+                low: false,
+            }];
+            let separation = Separation {
+                scene: &scene,
+                limits: &Limits::PAPER,
+                travel: &TRAVEL,
+                threats: &threats,
+                parameters: &parameters,
+            };
+            let mut governor = Governor::taking_over(Floor::new(2.0, 2.0), Planar::ZERO);
+            for proposals in wishes.iter().flat_map(|wish| std::iter::repeat_n(wish, 8)) {
+                let before = *governor.commanded();
+                let choice = governor.govern(proposals, &before, &separation, PERIOD);
+                let now = governor.commanded();
+                if choice.taken.is_some() {
+                    prop_assert_eq!(separation.certify(now), Ok(()));
+                }
+                for (now, before, limits) in [(now.x, before.x, Limits::PAPER.x), (now.y, before.y, Limits::PAPER.y)] {
+                    prop_assert!(now.v.abs() <= limits.speed_mps + 1e-9, "{} m/s", now.v);
+                    prop_assert!(now.a.abs() <= limits.braking_mps2 + 1e-9, "{} m/s2", now.a);
+                    prop_assert!((now.a - before.a).abs() <= limits.jerk_mps3 * PERIOD.secs() + 1e-9);
+                    prop_assert!((now.p - before.p).abs() <= limits.speed_mps * PERIOD.secs() + 1e-9);
+                }
+            }
+        }
+
+        /// Braking comes to rest, on either kind of brake, and stays there.
+        #[test]
+        fn both_brakes_come_to_rest(v in velocity()) {
+            let (scene, parameters) = (scene(), Parameters::new(1.6));
+            let separation = Separation {
+                scene: &scene,
+                limits: &Limits::PAPER,
+                travel: &TRAVEL,
+                threats: &[],
+                parameters: &parameters,
+            };
+            let v = Planar::new(v.x.clamp(-1.1, 1.1), v.y.clamp(-1.1, 1.1));
+            let mut along = Governor::taking_over(Floor::new(2.0, 2.0), v);
+            let mut hardest = along;
+            for _ in 0..200 {
+                along.protective_brake(&separation, PERIOD);
+                hardest.brake(&Limits::PAPER, PERIOD);
+            }
+            for governor in [along, hardest] {
+                let rest = governor.commanded();
+                prop_assert!(rest.velocity().norm() < 1e-6 && rest.acceleration().norm() < 1e-3, "{:?}", rest);
+                prop_assert!(rest.position().distance_m(Floor::new(2.0, 2.0)) < 0.6);
+            }
+        }
+    }
+}
