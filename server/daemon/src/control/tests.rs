@@ -1,5 +1,6 @@
 //! The control thread against a machine made for it: what happens when it panics, stalls, or is flooded.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc as std_mpsc;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -29,6 +30,8 @@ enum Whim {
 struct Puppet {
     whims: std_mpsc::Receiver<Whim>,
     told: Arc<Mutex<Vec<Action>>>,
+    /// It takes no command.
+    deaf: Arc<AtomicBool>,
 }
 
 impl Gantry for Puppet {
@@ -53,6 +56,9 @@ impl Gantry for Puppet {
     }
 
     fn write(&mut self, _: Time, command: &Vetted) -> Result<(), NotTaken> {
+        if self.deaf.load(Ordering::Acquire) {
+            return Err(NotTaken::NotHomed);
+        }
         self.told.lock().unwrap().push(command.action());
         Ok(())
     }
@@ -74,13 +80,15 @@ struct Stage {
     control: Control,
     whims: std_mpsc::Sender<Whim>,
     told: Arc<Mutex<Vec<Action>>>,
+    deaf: Arc<AtomicBool>,
     _events: mpsc::Receiver<crate::recorder::Record>,
 }
 
 fn start() -> Stage {
     let (whims, whims_out) = std_mpsc::channel();
     let told = Arc::new(Mutex::new(Vec::new()));
-    let puppet = Puppet { whims: whims_out, told: told.clone() };
+    let deaf = Arc::new(AtomicBool::new(false));
+    let puppet = Puppet { whims: whims_out, told: told.clone(), deaf: deaf.clone() };
     let (_, scene) = parse_scene(include_bytes!("../../../../deploy/scenes/demo.json")).unwrap();
     let period = Duration::from_millis(4);
     let config = EngineConfig {
@@ -103,7 +111,7 @@ fn start() -> Stage {
         events,
     })
     .unwrap();
-    Stage { control, whims, told, _events: events_out }
+    Stage { control, whims, told, deaf, _events: events_out }
 }
 
 impl Stage {
@@ -177,6 +185,27 @@ async fn a_full_queue_says_busy_and_a_stop_gets_through_all_the_same() {
     for ask in waiting {
         assert!(within("an answer", ask).await.unwrap().is_ok(), "whoever was not refused is answered");
     }
+}
+
+#[tokio::test]
+async fn a_stop_is_acknowledged_by_a_command_that_the_machine_took_and_by_no_other() {
+    let stage = start();
+    stage.deaf.store(true, Ordering::Release);
+    let press = || stage.control.stop(StopLaneName::Http, "look out".into(), Instant::now());
+    assert!(within("the refusal", press()).await.is_err(), "the drive took nothing");
+    assert_eq!(stage.control.published().snapshot.mode, Mode::LatchedStop);
+    // It hears again while a press waits: the next command that it takes acknowledges.
+    let mut waits = Box::pin(press());
+    tokio::select! {
+        biased;
+        early = &mut waits => panic!("{early:?}"),
+        () = tokio::task::yield_now() => {}
+    }
+    let mut published = stage.control.watch_published();
+    let steps = published.borrow().control_loop.steps;
+    within("steps that took nothing", published.wait_for(|p| p.control_loop.steps > steps)).await.unwrap();
+    stage.deaf.store(false, Ordering::Release);
+    assert!(within("the stop", waits).await.is_ok());
 }
 
 #[tokio::test]

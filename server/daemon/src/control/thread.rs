@@ -66,6 +66,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
         inbox: Inbox::new(asks_out, facts_out),
         stops: stops.clone(),
         stops_seen: [0; 4],
+        stops_unacknowledged: false,
         quit: quit.clone(),
         events: setup.events,
         events_dropped: events_dropped.clone(),
@@ -99,6 +100,8 @@ struct Run {
     inbox: Inbox,
     stops: Arc<[StopLane; 4]>,
     stops_seen: [u64; 4],
+    /// Stops were pressed, and the machine has taken no command since.
+    stops_unacknowledged: bool,
     quit: Arc<AtomicBool>,
     events: Sender<Record>,
     events_dropped: Arc<AtomicU64>,
@@ -152,7 +155,7 @@ impl Run {
         // Stops come last, so that no request of the same tick undoes one.
         let pressed = self.take_stops(now);
         let command = self.engine.step(now);
-        self.drive.write(&command, now);
+        let taken = self.drive.write(&command, now);
         let written = Instant::now();
         self.control_loop.steps += 1;
 
@@ -164,33 +167,34 @@ impl Run {
                 self.events_dropped.fetch_add(1, Ordering::Relaxed);
             }
         }
-        if written >= self.next_publish || mode_changed || pressed.is_some() || !answers.is_empty() {
+        if written >= self.next_publish || mode_changed || pressed || !answers.is_empty() {
             self.publish(written);
         }
         for (reply, answer) in answers {
             // Whoever asked may have gone; the answer is then nobody's.
             let _ = reply.send(answer);
         }
-        if let Some(presses) = pressed {
-            for (lane, presses) in self.stops.iter().zip(presses) {
+        // Only a command that the machine took acknowledges a stop; until one is, the presser is told so.
+        if taken && std::mem::take(&mut self.stops_unacknowledged) {
+            for (lane, presses) in self.stops.iter().zip(self.stops_seen) {
                 lane.acknowledge(presses, written);
             }
         }
     }
 
-    /// Put every new press to the engine; the presses of each lane so far, if any is new.
-    fn take_stops(&mut self, now: Time) -> Option<[u64; 4]> {
-        let mut presses = self.stops_seen;
-        for (lane, count) in self.stops.iter().zip(&mut presses) {
+    /// Put every new press to the engine; whether there was one.
+    fn take_stops(&mut self, now: Time) -> bool {
+        let mut pressed = false;
+        for (lane, seen) in self.stops.iter().zip(&mut self.stops_seen) {
             let so_far = lane.presses();
-            if so_far != *count {
-                *count = so_far;
+            if so_far != *seen {
+                *seen = so_far;
+                pressed = true;
                 self.engine.request(now, Request::Machine(RequestKind::Stop, Some(lane.reason())));
             }
         }
-        let pressed = presses != self.stops_seen;
-        self.stops_seen = presses;
-        pressed.then_some(presses)
+        self.stops_unacknowledged |= pressed;
+        pressed
     }
 
     fn publish(&mut self, at: Instant) {
@@ -214,17 +218,17 @@ impl Drive {
         engine.observe(now, Observation::Machine(reading.report));
     }
 
-    /// A refused command is R8's to act on; here it is said once until one is taken again.
-    fn write(&mut self, command: &Vetted, now: Time) {
+    /// Whether the machine took it. A refused command is R8's to act on; here it is said once until one is taken again.
+    fn write(&mut self, command: &Vetted, now: Time) -> bool {
         self.last = command.action();
-        match self.gantry.write(now, command) {
-            Ok(()) => self.refusing = false,
-            Err(why) if !self.refusing => {
-                self.refusing = true;
-                self.say_refused(&why);
-            }
-            Err(_) => {}
+        let taken = self.gantry.write(now, command);
+        if let Err(why) = &taken
+            && !self.refusing
+        {
+            self.say_refused(why);
         }
+        self.refusing = taken.is_err();
+        taken.is_ok()
     }
 
     fn say_refused(&self, why: &NotTaken) {
