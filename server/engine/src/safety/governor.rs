@@ -7,7 +7,7 @@
 use crate::frames::{Floor, Planar};
 use crate::machine::Limits;
 use crate::safety::path::{AxisPath, BrakePath, State};
-use crate::safety::separation::{Conflict, Separation};
+use crate::safety::separation::{Conflict, MEASUREMENT_NOISE_MPS, Separation};
 use crate::safety::vetted::{Action, Setpoint, Vetted};
 use crate::time::{Span, Time};
 
@@ -30,7 +30,7 @@ impl Governor {
     /// Take the machine over as it is measured: where it stands, or in its motion if it was armed while it still moved.
     /// To command rest to a moving machine would have it run past and come back, certified by nobody.
     pub fn taking_over(place: Floor, velocity: Planar) -> Self {
-        let rests = velocity.norm() < MEASURED_REST_MPS;
+        let rests = velocity.norm() < MEASUREMENT_NOISE_MPS;
         Self { commanded: State::moving(place, if rests { Planar::ZERO } else { velocity }) }
     }
 
@@ -109,8 +109,6 @@ impl Governor {
     }
 }
 
-/// A machine at rest measures less than this, m/s.
-const MEASURED_REST_MPS: f64 = 0.02;
 /// The slower axis keeps at least this share of its braking, so that both come to rest.
 const LEAST_SHARE: f64 = 0.1;
 
