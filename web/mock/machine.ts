@@ -167,10 +167,21 @@ export class MockMachine {
         target_m: target,
         serves: this.#mode === "following" ? person.id : null,
         committed: this.#mode === "following" ? best.id : null,
+        activity: this.#mode === "following" ? (speed < 0.02 ? "in_place" : "approaching") : this.#mode === "disarmed" ? "released" : this.#mode === "homing" ? "homing" : this.#mode === "ready" ? "ready" : "stopped",
+        reason: this.#mode === "following" ? `${best.id}: weight ${best.weight.toFixed(2)}, the greatest` : "not armed",
+        planned_path_m: target === null ? [] : this.#pathTo(target),
         current_amps: [0.8 + speed, 0.6 + speed],
         homed: this.#mode !== "faulted",
       },
-      persons: [{ ...person, distance_m: this.#distance(), required_m: required }],
+      persons: [
+        {
+          ...person,
+          distance_m: this.#distance(),
+          required_m: required,
+          separation: { radius_m: 0.45, reaction_m: 0.05 + 0.05 * speed, braking_m: 0.1 * speed, walking_m: 0.1 + 0.15 * speed, age_m: 0.02, binding: "walking" },
+          limits_column: this.#distance() < required + 0.3,
+        },
+      ],
       objects,
       intention_rule: "paper",
       control_loop: {
@@ -181,7 +192,7 @@ export class MockMachine {
         lateness_max_micros: 1240,
         scheduling: "ordinary scheduling, memory not locked",
       },
-      clients: [{ name: "mock visitor", convention: "openxr", poses: this.#generation * 3, pose_rate_hz: 90, rtt_millis: 0.6, errors: 0 }],
+      clients: [{ name: "mock visitor", convention: "openxr", poses: this.#generation * 3, pose_rate_hz: 90, rtt_millis: 0.6, persons: [1], pose_age_millis: 12, jitter_millis: 1.4, loss_percent: 0, errors: 0 }],
       scene_id: this.sceneId,
       session_id: 1,
     };
@@ -233,6 +244,8 @@ export class MockMachine {
       separation_radius_m: 0.45,
       distance_m: 0,
       required_m: 0,
+      separation: null,
+      limits_column: false,
     };
   }
 
@@ -269,6 +282,11 @@ export class MockMachine {
     const [first, ...rest] = objects;
     if (first === undefined) throw new Error("a scene has at least one object");
     return rest.reduce((best, object) => (object.weight > best.weight ? object : best), first);
+  }
+
+  #pathTo(target: readonly [number, number]): [number, number][] {
+    const [x, y] = this.#column;
+    return Array.from({ length: 11 }, (_, step): [number, number] => [x + ((target[0] - x) * step) / 10, y + ((target[1] - y) * step) / 10]);
   }
 
   #target(): [number, number] {

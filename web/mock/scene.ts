@@ -1,5 +1,5 @@
 /** The scene that the mock starts with. */
-import type { MachineShape, SceneDocument } from "../src/api/types";
+import type { LinkThresholds, MachineShape, SceneDocument } from "../src/api/types";
 
 /** Column and travel of the mock's machine. */
 export const MACHINE_SHAPE: MachineShape = {
@@ -32,4 +32,13 @@ export const MOCK_SCENE: SceneDocument = {
     { id: "table", label: "Table", shape: { kind: "polygon", corners: [[3.3, 0.1], [3.9, 0.1], [3.9, 0.5], [3.3, 0.5]] } },
     { id: "chair", label: "Bystander", shape: { kind: "circle", centre: [0.4, 3.7], radius: 0.25 } },
   ],
+};
+
+/** As the server's. */
+export const LINK_THRESHOLDS: LinkThresholds = {
+  pose_age_millis: { weak: 50, bad: 150 },
+  jitter_millis: { weak: 8, bad: 25 },
+  loss_percent: { weak: 1, bad: 5 },
+  rtt_millis: { weak: 20, bad: 60 },
+  lateness_micros: { weak: 1000, bad: 4000 },
 };

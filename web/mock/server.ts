@@ -6,7 +6,7 @@ import type { IncomingMessage, Server, ServerResponse } from "node:http";
 import { WebSocketServer, type WebSocket } from "ws";
 import type { FromDashboard, MachineRequest, PriorChange, SceneDocument, SceneError, ToDashboard } from "../src/api/types";
 import { MockMachine, type MockOptions } from "./machine.ts";
-import { MACHINE_SHAPE, MOCK_SCENE } from "./scene.ts";
+import { LINK_THRESHOLDS, MACHINE_SHAPE, MOCK_SCENE } from "./scene.ts";
 
 interface StoredScene {
   readonly id: number;
@@ -63,7 +63,7 @@ export class MockServer {
   }
 
   #greet(client: WebSocket): void {
-    send(client, { type: "welcome", version: "mock", machine: "simulated", machine_shape: MACHINE_SHAPE });
+    send(client, { type: "welcome", version: "mock", machine: "simulated", machine_shape: MACHINE_SHAPE, link_thresholds: LINK_THRESHOLDS });
     send(client, this.#sceneMessage());
     client.on("message", (data: Buffer) => {
       const message = JSON.parse(data.toString()) as FromDashboard;

@@ -1,6 +1,10 @@
 import { render } from "solid-js/web";
 import { App } from "./views/App";
-import "./style.css";
+import "./style/base.css";
+import "./style/live.css";
+import "./style/desk.css";
+import "./style/records.css";
+import "./style/settings.css";
 
 const root = document.getElementById("root");
 if (root === null) throw new Error("the page has no root");

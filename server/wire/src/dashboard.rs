@@ -67,6 +67,8 @@ pub enum ToDashboard {
         machine: String,
         /// Column and travel.
         machine_shape: MachineShape,
+        /// From where on a link is shown as weak or bad.
+        link_thresholds: LinkThresholds,
     },
     /// The active scene; sent on connection and at each activation.
     Scene {
@@ -247,10 +249,71 @@ pub struct Column {
     pub serves: Option<u32>,
     /// Id of the object that the rule is committed to.
     pub committed: Option<String>,
+    /// What it is about.
+    pub activity: Activity,
+    /// Why it does that, in plain words, with values and units.
+    pub reason: String,
+    /// Where it would go from here if everybody stood still, 0.1 s apart; empty when it goes nowhere.
+    pub planned_path_m: Vec<[f64; 2]>,
     /// Motor currents, A.
     pub current_amps: [f64; 2],
     /// Positions are in the room frame.
     pub homed: bool,
+}
+
+/// What the column is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
+#[serde(rename_all = "snake_case")]
+pub enum Activity {
+    /// The drive is released.
+    Released,
+    /// It looks for the switches.
+    Homing,
+    /// Homed, holding, not armed.
+    Ready,
+    /// Armed, and there is nobody to serve, or nothing to serve them.
+    Waiting,
+    /// On its way to where it is wanted.
+    Approaching,
+    /// On its way, slower or another way because of a safety rule.
+    Yielding,
+    /// It may not go on: a safety rule holds it.
+    Blocked,
+    /// It stands where it is wanted.
+    InPlace,
+    /// Stopped, or braking for a stop.
+    Stopped,
+}
+
+/// The terms of the separation rule: `required_m` of a person is their sum.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct SeparationTerms {
+    /// r, m.
+    pub radius_m: f64,
+    /// What column and person cover in the reaction time, m.
+    pub reaction_m: f64,
+    /// What the column covers while it brakes, m.
+    pub braking_m: f64,
+    /// What the person may walk while it brakes, m.
+    pub walking_m: f64,
+    /// What the person may have walked since the pose was taken, m.
+    pub age_m: f64,
+    /// The greatest of the four beyond r.
+    pub binding: SeparationTerm,
+}
+
+/// A term of the separation rule.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
+#[serde(rename_all = "snake_case")]
+pub enum SeparationTerm {
+    /// Reaction time.
+    Reaction,
+    /// The column's braking.
+    Braking,
+    /// The person's walking.
+    Walking,
+    /// The age of the pose.
+    Age,
 }
 
 /// One person, room frame.
@@ -276,8 +339,12 @@ pub struct Person {
     pub separation_radius_m: f64,
     /// Head axis to footprint, m.
     pub distance_m: f64,
-    /// What the rule asks at the present speed, m.
+    /// What the rule asks at the present speed, m: the sum of its terms.
     pub required_m: f64,
+    /// The terms of that sum; null without a pose.
+    pub separation: Option<SeparationTerms>,
+    /// The column is slowed, turned aside or held because of this person.
+    pub limits_column: bool,
 }
 
 /// One object of the active scene.
@@ -332,9 +399,41 @@ pub struct Client {
     pub pose_rate_hz: f64,
     /// Least round trip of the clock window, ms; null before the first.
     pub rtt_millis: Option<f64>,
+    /// Ids of the persons that it speaks for.
+    pub persons: Vec<u32>,
+    /// Greatest age that a pose had when it was received, over the last second, ms; null without poses.
+    pub pose_age_millis: Option<f64>,
+    /// Interarrival jitter of its poses (RFC 3550, 6.4.1), ms; null before the second pose.
+    pub jitter_millis: Option<f64>,
+    /// Poses missing in their sequence over the last 10 s, percent; null without poses.
+    pub loss_percent: Option<f64>,
     /// Messages refused.
     #[ts(type = "number")]
     pub errors: u64,
+}
+
+/// From where on a measure is shown as weak, and as bad.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct Threshold {
+    /// Weak from here on.
+    pub weak: f64,
+    /// Bad from here on.
+    pub bad: f64,
+}
+
+/// Thresholds of what links and loop are measured by. They colour the dashboard; the safety rules have their own.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct LinkThresholds {
+    /// Of `pose_age_millis`.
+    pub pose_age_millis: Threshold,
+    /// Of `jitter_millis`.
+    pub jitter_millis: Threshold,
+    /// Of `loss_percent`.
+    pub loss_percent: Threshold,
+    /// Of `rtt_millis`.
+    pub rtt_millis: Threshold,
+    /// Of `lateness_p99_micros`.
+    pub lateness_micros: Threshold,
 }
 
 /// Something that happened, as stored.
@@ -354,4 +453,15 @@ pub struct Event {
     /// Particulars, by kind.
     #[ts(type = "unknown")]
     pub detail: serde_json::Value,
+}
+
+impl LinkThresholds {
+    /// What suits a 90 Hz headset on a wireless link and a 250 Hz loop.
+    pub const USUAL: Self = Self {
+        pose_age_millis: Threshold { weak: 50.0, bad: 150.0 },
+        jitter_millis: Threshold { weak: 8.0, bad: 25.0 },
+        loss_percent: Threshold { weak: 1.0, bad: 5.0 },
+        rtt_millis: Threshold { weak: 20.0, bad: 60.0 },
+        lateness_micros: Threshold { weak: 1_000.0, bad: 4_000.0 },
+    };
 }

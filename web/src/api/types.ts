@@ -3,12 +3,14 @@
  * except the names of rows that only HTTP answers carry.
  */
 export type {
+  Activity,
   Client,
   Column,
   ControlLoop,
   Event as WireEvent,
   FromDashboard,
   KeepOutDocument,
+  LinkThresholds,
   MachineRequest,
   MachineShape,
   Mode,
@@ -21,9 +23,12 @@ export type {
   RuleState,
   RuleStatus,
   SceneDocument,
+  SeparationTerm,
+  SeparationTerms,
   ShapeDocument,
   Snapshot,
   StopCause,
+  Threshold,
   ToDashboard,
 } from "./generated";
 

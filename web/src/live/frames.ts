@@ -43,6 +43,7 @@ const FIELDS: Readonly<Record<ToDashboard["type"], readonly (readonly [string, K
     ["version", "string"],
     ["machine", "string"],
     ["machine_shape", "object"],
+    ["link_thresholds", "object"],
   ],
   scene: [
     ["id", "number"],

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { MockMachine } from "../../mock/machine";
-import { MOCK_SCENE } from "../../mock/scene";
+import { LINK_THRESHOLDS, MOCK_SCENE } from "../../mock/scene";
 import type { Snapshot, ToDashboard, WireEvent } from "../api/types";
 import { freshness, NOTHING_YET, reduce, STALE_AFTER_MILLIS, type LiveState } from "./state";
 
@@ -71,10 +71,10 @@ describe("what the page knows", () => {
 
   it("keeps welcome and scene, and strips the tag from snapshots", () => {
     const shape = { travel_m: [0, 0, 4, 4], speed_mps: [1, 1], acceleration_mps2: [1, 1], braking_mps2: [2, 2] } satisfies Extract<ToDashboard, { type: "welcome" }>["machine_shape"];
-    let state = receive(OPEN, { type: "welcome", version: "0.1.0", machine: "simulated", machine_shape: shape }, 1);
+    let state = receive(OPEN, { type: "welcome", version: "0.1.0", machine: "simulated", machine_shape: shape, link_thresholds: LINK_THRESHOLDS }, 1);
     state = receive(state, { type: "scene", id: 3, version: 2, scene: MOCK_SCENE }, 2);
     state = receive(state, snapshot(1, 0), 3);
-    expect(state.server).toEqual({ version: "0.1.0", machine: "simulated", shape });
+    expect(state.server).toEqual({ version: "0.1.0", machine: "simulated", shape, thresholds: LINK_THRESHOLDS });
     expect(state.scene).toEqual({ id: 3, version: 2, scene: MOCK_SCENE });
     expect(state.snapshot).not.toHaveProperty("type");
   });

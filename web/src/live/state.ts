@@ -2,7 +2,7 @@
  * What the page knows of the server, as one value and one function of what arrived. It decides how old the shown
  * snapshot is; it must never call something live that is not. Pure: time comes in as an argument.
  */
-import type { MachineShape, SceneDocument, Snapshot, ToDashboard, WireEvent } from "../api/types";
+import type { LinkThresholds, MachineShape, SceneDocument, Snapshot, ToDashboard, WireEvent } from "../api/types";
 
 /** How the socket stands. */
 export type Link =
@@ -15,6 +15,7 @@ export interface ServerIdentity {
   readonly version: string;
   readonly machine: string;
   readonly shape: MachineShape;
+  readonly thresholds: LinkThresholds;
 }
 
 /** The active scene. */
@@ -103,7 +104,7 @@ function reduceMessage(state: LiveState, message: ToDashboard, nowMillis: number
     case "welcome":
       return {
         ...state,
-        server: { version: message.version, machine: message.machine, shape: message.machine_shape },
+        server: { version: message.version, machine: message.machine, shape: message.machine_shape, thresholds: message.link_thresholds },
         clockOffsetMillis: null,
       };
     case "scene":

@@ -12,7 +12,7 @@ use covr_engine::{Answer, Outcome as EngineOutcome, Request};
 use serde_json::json;
 
 use super::{
-    Client, Column, ControlLoop, Event, MachineRequest, MachineShape, Mode, Object, Outcome, Person,
+    Activity, Client, Column, ControlLoop, Event, MachineRequest, MachineShape, Mode, Object, Outcome, Person,
     RequestState, RuleState, RuleStatus, Snapshot, StopCause, ToDashboard,
 };
 
@@ -263,8 +263,22 @@ fn column(state: &engine::Snapshot) -> Column {
         target_m: column.target.map(floor),
         serves: column.serves.map(|person| person.0),
         committed: column.committed.and_then(|i| state.objects.get(i)).map(|object| object.id.clone()),
+        activity: activity(state),
+        reason: String::new(),
+        planned_path_m: Vec::new(),
         current_amps: column.current_amps,
         homed: column.homed,
+    }
+}
+
+const fn activity(state: &engine::Snapshot) -> Activity {
+    match state.mode {
+        EngineMode::Disarmed => Activity::Released,
+        EngineMode::Homing => Activity::Homing,
+        EngineMode::Ready => Activity::Ready,
+        EngineMode::Following if state.column.serves.is_some() => Activity::Approaching,
+        EngineMode::Following => Activity::Waiting,
+        EngineMode::ProtectiveStop | EngineMode::LatchedStop | EngineMode::Faulted => Activity::Stopped,
     }
 }
 
@@ -282,6 +296,8 @@ fn person(person: &engine::PersonState, names: &BTreeMap<PersonId, String>) -> P
         separation_radius_m: person.separation_radius_m,
         distance_m: person.distance_m,
         required_m: person.required_m,
+        separation: None,
+        limits_column: false,
     }
 }
 

@@ -25,6 +25,22 @@ pose_rate_hz: number,
  */
 rtt_millis: number | null, 
 /**
+ * Ids of the persons that it speaks for.
+ */
+persons: Array<number>, 
+/**
+ * Greatest age that a pose had when it was received, over the last second, ms; null without poses.
+ */
+pose_age_millis: number | null, 
+/**
+ * Interarrival jitter of its poses (RFC 3550, 6.4.1), ms; null before the second pose.
+ */
+jitter_millis: number | null, 
+/**
+ * Poses missing in their sequence over the last 10 s, percent; null without poses.
+ */
+loss_percent: number | null, 
+/**
  * Messages refused.
  */
 errors: number, };

@@ -281,6 +281,10 @@ impl Guest {
             poses: self.poses,
             pose_rate_hz: self.pose_times.len() as f64,
             rtt_millis: self.clock.rtt().map(|rtt| rtt.secs() * 1e3),
+            persons: self.persons.values().map(|present| present.id.0).collect(),
+            pose_age_millis: None,
+            jitter_millis: None,
+            loss_percent: None,
             errors: self.errors,
         });
     }

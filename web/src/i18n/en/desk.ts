@@ -1,0 +1,2 @@
+/** Words of the area `desk`. */
+export const desk = {} as const;

@@ -1,0 +1,2 @@
+/** Words of the area `live`. */
+export const live = {} as const;

@@ -1,0 +1,5 @@
+export { desk } from "./desk";
+export { live } from "./live";
+export { records } from "./records";
+export { settings } from "./settings";
+export { shell } from "./shell";

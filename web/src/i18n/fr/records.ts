@@ -1,0 +1,2 @@
+/** Words of the area `records`. */
+export const records = {} as const;
