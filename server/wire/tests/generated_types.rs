@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use covr_wire::client::{FromClient, ToClient};
 use covr_wire::dashboard::{FromDashboard, ToDashboard};
+use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
 use covr_wire::scene::{SceneDocument, SceneError};
 use ts_rs::{Config, TS};
 
@@ -32,6 +33,10 @@ fn generate() -> BTreeMap<String, String> {
     let config = Config::new().with_large_int("number").with_out_dir(out.path());
     FromDashboard::export_all(&config).expect("dashboard requests");
     ToDashboard::export_all(&config).expect("dashboard messages");
+    RecordedFrames::export_all(&config).expect("recordings");
+    Session::export_all(&config).expect("sessions");
+    SessionDetail::export_all(&config).expect("sessions");
+    ConfigInForce::export_all(&config).expect("the configuration");
     SceneDocument::export_all(&config).expect("scenes");
     SceneError::export_all(&config).expect("scene errors");
     FromClient::export_all(&config).expect("client messages");
