@@ -13,7 +13,9 @@ use axum::response::{IntoResponse, Response};
 use covr_engine::mode::RequestKind;
 use covr_engine::observation::PersonId;
 use covr_engine::{Answer, Outcome};
-use covr_wire::dashboard::{FromDashboard, LinkThresholds, MachineRequest, MachineShape, Snapshot, ToDashboard};
+use covr_wire::dashboard::{
+    FromDashboard, LinkThresholds, MachineRequest, MachineShape, Snapshot, ToDashboard,
+};
 use futures_util::StreamExt;
 use futures_util::stream::{SplitSink, SplitStream};
 use tokio::sync::broadcast::error::RecvError;

@@ -12,8 +12,8 @@ use covr_engine::{Answer, Outcome as EngineOutcome, Request};
 use serde_json::json;
 
 use super::{
-    Activity, Client, Column, ControlLoop, Event, MachineRequest, MachineShape, Mode, Object, Outcome, Person,
-    RequestState, RuleState, RuleStatus, Snapshot, StopCause, ToDashboard,
+    Activity, Client, Column, ControlLoop, Event, MachineRequest, MachineShape, Mode, Object, Outcome,
+    Person, RequestState, RuleState, RuleStatus, Snapshot, StopCause, ToDashboard,
 };
 
 /// What a snapshot holds that the engine does not know.
