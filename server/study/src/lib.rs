@@ -7,3 +7,4 @@ pub mod random;
 pub mod replay;
 pub mod trace;
 pub mod visitor;
+pub mod workload;
