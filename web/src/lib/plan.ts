@@ -14,6 +14,7 @@ export interface Bounds {
 export interface Plan {
   readonly pxPerMetre: number;
   readonly toPx: (point: Point) => Point;
+  readonly toRoom: (point: Point) => Point;
 }
 
 /** The largest plan that shows the bounds whole, centred, with a margin in px. */
@@ -28,6 +29,7 @@ export function fitPlan(bounds: Bounds, widthPx: number, heightPx: number, margi
   return {
     pxPerMetre,
     toPx: ([x, y]) => [widthPx / 2 + (x - centre[0]) * pxPerMetre, heightPx / 2 - (y - centre[1]) * pxPerMetre],
+    toRoom: ([px, py]) => [centre[0] + (px - widthPx / 2) / pxPerMetre, centre[1] - (py - heightPx / 2) / pxPerMetre],
   };
 }
 

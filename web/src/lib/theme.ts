@@ -1,4 +1,5 @@
 /** The canvas's colours, read from the page's own, so that both change together. */
+import type { SeparationTerm } from "../api/types";
 
 /** Colours by what they mean, each as #rrggbb. */
 export interface Palette {
@@ -17,6 +18,8 @@ export interface Palette {
   readonly danger: string;
   readonly near: string;
   readonly keepOut: string;
+  /** The terms of the separation rule. */
+  readonly terms: Readonly<Record<SeparationTerm, string>>;
 }
 
 /** Reads the palette as it is now. */
@@ -39,5 +42,11 @@ export function readPalette(element: Element): Palette {
     danger: colour("danger"),
     near: colour("warn"),
     keepOut: colour("keep-out"),
+    terms: {
+      reaction: colour("term-reaction"),
+      braking: colour("term-braking"),
+      walking: colour("term-walking"),
+      age: colour("term-age"),
+    },
   };
 }
