@@ -81,11 +81,37 @@ async fn a_good_scene_passes_the_check_and_is_not_stored() {
 }
 
 #[tokio::test]
+async fn every_version_is_listed_newest_first_and_the_active_one_is_marked() {
+    let server = TestServer::start().await;
+    server.call_as(Some("Ada"), "POST", "/api/v1/scenes", Some(KITCHEN)).await;
+    let two = server.good("GET", "/api/v1/scenes/2", None).await;
+    let mut one_object = two.clone();
+    one_object["objects"].as_array_mut().unwrap().pop();
+    server.call_as(Some("Bo"), "PUT", "/api/v1/scenes/2", Some(&one_object.to_string())).await;
+    server.good("PUT", "/api/v1/scenes/2/activate?version=1", None).await;
+
+    let versions = server.good("GET", "/api/v1/scenes/2/versions", None).await;
+    let row = |row: &serde_json::Value| {
+        let (author, active) = (row["author"].clone(), row["active"].clone());
+        (row["version"].as_i64(), author, active, row["objects"].as_i64())
+    };
+    let rows: Vec<_> = versions.as_array().unwrap().iter().map(row).collect();
+    let expected =
+        vec![(Some(2), "Bo".into(), false.into(), Some(1)), (Some(1), "Ada".into(), true.into(), Some(2))];
+    assert_eq!(rows, expected);
+    let [newest, oldest] = [0, 1].map(|row| versions[row]["created_at"].as_str().unwrap().to_owned());
+    assert!(newest >= oldest, "{newest} is not before {oldest}");
+    let demo = server.good("GET", "/api/v1/scenes/1/versions", None).await;
+    assert_eq!(demo[0]["active"], false, "a version 1 of another scene is not the active one");
+}
+
+#[tokio::test]
 async fn a_scene_that_is_not_there_is_said_so() {
     let server = TestServer::start().await;
     server.refused(404, "GET", "/api/v1/scenes/99", None).await;
     server.refused(404, "GET", "/api/v1/scenes/kitchen", None).await;
     server.refused(404, "GET", "/api/v1/scenes/1?version=9", None).await;
+    server.refused(404, "GET", "/api/v1/scenes/99/versions", None).await;
     server.refused(404, "PUT", "/api/v1/scenes/99", Some(KITCHEN)).await;
     server.refused(404, "PUT", "/api/v1/scenes/99/activate", None).await;
 }

@@ -19,7 +19,7 @@ use sqlx::sqlite::{
 
 pub use events::NewEvent;
 pub use priors::{PriorChange, StoredPriorChange};
-pub use scenes::{SceneVersion, StoredScene};
+pub use scenes::{SceneVersion, StoredScene, StoredSceneVersion};
 pub use sessions::{SessionEnd, StoredSession};
 
 /// The database.

@@ -18,7 +18,7 @@ use super::input::Author;
 use super::problem::{Problem, ProblemItem};
 use crate::app::App;
 use crate::stage::ActivationRefused;
-use crate::store::StoredScene;
+use crate::store::{StoredScene, StoredSceneVersion};
 
 /// Where a scene was stored.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -64,6 +64,7 @@ pub fn routes() -> OpenApiRouter<Arc<App>> {
         .routes(routes!(list, add))
         .routes(routes!(check))
         .routes(routes!(read, replace))
+        .routes(routes!(versions))
         .routes(routes!(activate))
         .routes(routes!(schema))
 }
@@ -113,6 +114,18 @@ async fn read(
         }
     }
     Ok((headers, Json(stored.document)).into_response())
+}
+
+/// Every version of a scene, newest first.
+#[utoipa::path(get, path = "/scenes/{id}/versions", tag = "scenes", params(("id" = i64, Path, description = "The store's number")),
+    responses((status = 200, body = Vec<StoredSceneVersion>), (status = 404, description = "No such scene", body = Problem)))]
+async fn versions(
+    State(app): State<Arc<App>>,
+    Path(id): Path<String>,
+) -> Result<Json<Vec<StoredSceneVersion>>, Problem> {
+    let versions = app.store.scene_versions(number(&id)?).await?;
+    // A scene is stored together with its version 1: one without versions is none.
+    if versions.is_empty() { Err(no_scene(&id, None)) } else { Ok(Json(versions)) }
 }
 
 /// Store a new version of a scene. The active scene stays as it is until the new version is activated.

@@ -23,6 +23,21 @@ pub struct StoredScene {
     pub active: bool,
 }
 
+/// A version of a scene, without its document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, sqlx::FromRow, utoipa::ToSchema)]
+pub struct StoredSceneVersion {
+    /// The version.
+    pub version: i64,
+    /// Who wrote it.
+    pub author: String,
+    /// When it was stored, RFC 3339.
+    pub created_at: String,
+    /// It is the one that is played.
+    pub active: bool,
+    /// How many objects it has.
+    pub objects: i64,
+}
+
 /// One version of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneVersion {
@@ -101,6 +116,19 @@ impl Store {
              FROM scenes s JOIN scene_versions v ON v.scene_id = s.id \
              WHERE v.version = (SELECT MAX(version) FROM scene_versions WHERE scene_id = s.id) ORDER BY s.id",
         )
+        .fetch_all(&self.pool)
+        .await?)
+    }
+
+    /// Every version of a scene, newest first; empty when there is no such scene.
+    pub async fn scene_versions(&self, id: i64) -> Result<Vec<StoredSceneVersion>, StoreError> {
+        Ok(sqlx::query_as(
+            "SELECT v.version, v.author, v.created AS created_at, \
+             (v.scene_id IS s.active_scene_id AND v.version IS s.active_scene_version) AS active, \
+             json_array_length(v.document, '$.objects') AS objects \
+             FROM scene_versions v, server_state s WHERE v.scene_id = ? ORDER BY v.version DESC",
+        )
+        .bind(id)
         .fetch_all(&self.pool)
         .await?)
     }
