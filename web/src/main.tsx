@@ -1,6 +1,7 @@
 import { render } from "solid-js/web";
 import { App } from "./views/App";
 import "./style/base.css";
+import "./style/shell.css";
 import "./style/live.css";
 import "./style/desk.css";
 import "./style/records.css";

@@ -1,5 +1,6 @@
 /** Decides how values read: fixed digits, so that nothing jumps about while it changes. */
 import type { Mode } from "../api/types";
+import { words } from "../i18n";
 
 /** Metres with two digits, sign kept. */
 export function metres(value: number): string {
@@ -27,7 +28,7 @@ export function percent(share: number): string {
 
 /** A mode in the words of the glossary. */
 export function modeWords(mode: Mode): string {
-  return MODE_WORDS[mode];
+  return words().shell.modes[mode];
 }
 
 /** The time of day of an RFC 3339 moment, in the reader's own zone; the text itself if it is none. */
@@ -55,13 +56,3 @@ export function lateBySecs(arrivalSecs: number, touchSecs: number | null): numbe
 function pad(value: number): string {
   return String(value).padStart(2, "0");
 }
-
-const MODE_WORDS: Readonly<Record<Mode, string>> = {
-  disarmed: "Disarmed",
-  homing: "Homing",
-  ready: "Ready",
-  following: "Following",
-  protective_stop: "Protective stop",
-  latched_stop: "Latched stop",
-  faulted: "Faulted",
-};

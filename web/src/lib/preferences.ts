@@ -11,12 +11,15 @@ export interface Preferences {
   /** Layout of the live desk, by the desk's own keys. */
   readonly layout?: Readonly<Record<string, string | number | boolean>>;
   readonly tourDone?: boolean;
+  /** False turns the single-key shortcuts off: who dictates speaks letters. */
+  readonly shortcuts?: boolean;
 }
 
 /** The preferences of one user, and the way to change them. */
 export interface PreferenceStore {
   readonly preferences: Accessor<Preferences>;
-  readonly change: (change: Partial<Preferences>) => void;
+  /** What is given as undefined goes back to its default. */
+  readonly change: (change: { readonly [Key in keyof Preferences]: Preferences[Key] | undefined }) => void;
   /** Another user sits down. */
   readonly switchTo: (user: string) => void;
 }
@@ -28,7 +31,7 @@ export function createPreferences(user: string): PreferenceStore {
   return {
     preferences,
     change: (change) => {
-      const next = { ...preferences(), ...change };
+      const next = Object.fromEntries(Object.entries({ ...preferences(), ...change }).filter(([, value]) => value !== undefined));
       set(next);
       try {
         localStorage.setItem(key, JSON.stringify(next));
@@ -46,9 +49,26 @@ export function createPreferences(user: string): PreferenceStore {
 function read(key: string): Preferences {
   try {
     const found: unknown = JSON.parse(localStorage.getItem(key) ?? "{}");
-    return typeof found === "object" && found !== null && !Array.isArray(found) ? found : {};
+    if (typeof found !== "object" || found === null) return {};
+    return Object.fromEntries(Object.entries(found).filter(([name, value]) => isReadable(name, value)));
   } catch {
     return {};
+  }
+}
+
+function isReadable(name: string, value: unknown): boolean {
+  switch (name) {
+    case "theme":
+      return value === "dark" || value === "light";
+    case "language":
+      return value === "en" || value === "fr";
+    case "tourDone":
+    case "shortcuts":
+      return typeof value === "boolean";
+    case "layout":
+      return typeof value === "object" && value !== null && !Array.isArray(value);
+    default:
+      return false;
   }
 }
 

@@ -1,5 +1,30 @@
-/** The canvas's colours, read from the page's own, so that both change together. */
+/**
+ * Dark or light. The page wears its theme as `data-theme` on the root element; `public/theme.js` puts the last one on
+ * before the first paint. The canvas's colours are read from the page's own, so that both change together.
+ */
+import { createSignal } from "solid-js";
 import type { SeparationTerm } from "../api/types";
+
+/** What the page looks like. */
+export type Theme = "dark" | "light";
+
+const [theme, setTheme] = createSignal<Theme>("dark");
+
+/** The theme that the page wears; whoever has read the palette reads it again when this changes. */
+export { theme };
+
+/** Puts a theme on. Without a choice of the user's it is the system's, and follows it. */
+export function useTheme(choice: Theme | undefined, system: Theme): void {
+  const next = choice ?? system;
+  document.documentElement.dataset["theme"] = next;
+  try {
+    if (choice === undefined) localStorage.removeItem(KEY);
+    else localStorage.setItem(KEY, choice);
+  } catch {
+    // A browser that keeps nothing starts with the system's theme.
+  }
+  setTheme(next);
+}
 
 /** Colours by what they mean, each as #rrggbb. */
 export interface Palette {
@@ -50,3 +75,6 @@ export function readPalette(element: Element): Palette {
     },
   };
 }
+
+/** `public/theme.js` reads it too. */
+const KEY = "covr.theme";

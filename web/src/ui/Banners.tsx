@@ -1,5 +1,6 @@
 /** What everybody must see at once: no connection, old values, and why the machine is stopped. */
 import { createMemo, Show, type JSX } from "solid-js";
+import { words } from "../i18n";
 import type { Live } from "../live/live";
 import { modeWords, span } from "../lib/format";
 
@@ -16,19 +17,20 @@ export function Banners(props: { readonly live: Live }): JSX.Element {
     <>
       <Show when={age() !== null}>
         <div class="bar bar-stale" role="alert" data-testid="stale-banner">
-          <b>STALE</b>
+          <b>{words().shell.banners.stale}</b>
           <span aria-hidden="true">
-            Nothing here is live: the last state is <span data-testid="stale-age">{span((age() ?? 0) / 1000)}</span> old.{" "}
+            {words().shell.banners.staleFor} <span data-testid="stale-age">{span((age() ?? 0) / 1000)}</span>{" "}
+            {words().shell.banners.old}{" "}
             {linkWords(props.live)}
           </span>
           <button type="button" class="quiet bar-end" onClick={() => { props.live.connectNow(); }}>
-            Connect now
+            {words().shell.banners.connectNow}
           </button>
         </div>
       </Show>
       <Show when={waiting()}>
         <div class="bar bar-stale" role="status" data-testid="no-state-banner">
-          <b>NO STATE YET</b>
+          <b>{words().shell.banners.noState}</b>
           <span>{linkWords(props.live)}</span>
         </div>
       </Show>
@@ -43,9 +45,15 @@ export function Banners(props: { readonly live: Live }): JSX.Element {
             <b>
               {modeWords(props.live.snapshot()?.mode ?? "latched_stop")}, {stop().rule}:
             </b>
-            <span data-testid="stop-reason">{stop().reason}</span>
+            <span data-testid="stop-reason" lang="en">{stop().reason}</span>
             <span class="clears">
-              Clears when: <span data-testid="stop-clears-when">{stop().clears_when}</span>
+              {words().shell.banners.clearsWhen}{" "}
+              <span data-testid="stop-clears-when" lang="en">
+                {stop().clears_when}
+              </span>{" "}
+              <a href={`#/help/stop/${stop().rule}`} data-testid="stop-help">
+                {words().shell.banners.whatToDo}
+              </a>
             </span>
           </div>
         )}
@@ -56,12 +64,13 @@ export function Banners(props: { readonly live: Live }): JSX.Element {
 
 function linkWords(live: Live): string {
   const link = live.link();
+  const say = words().shell.banners;
   switch (link.phase) {
     case "open":
-      return "The connection is open, but no new state comes.";
+      return say.openButSilent;
     case "connecting":
-      return link.attempt === 0 ? "Connecting to the server." : `Connecting again, attempt ${link.attempt}.`;
+      return link.attempt === 0 ? say.connecting : say.connectingAgain(link.attempt);
     case "waiting":
-      return `No connection to the server; attempt ${link.attempt} in ${span(Math.max(0, link.retryAtMillis - live.nowMillis()) / 1000)}.`;
+      return say.waiting(link.attempt, span(Math.max(0, link.retryAtMillis - live.nowMillis()) / 1000));
   }
 }

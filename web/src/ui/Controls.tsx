@@ -1,18 +1,19 @@
 /** Home, arm, disarm and reset: offered when the server would accept them, else with the server's reason. */
 import { createSignal, For, Show, type JSX } from "solid-js";
 import type { MachineRequest } from "../api/types";
+import { words } from "../i18n";
 import type { Live } from "../live/live";
 import type { Answer } from "../live/requests";
 
 /** The machine's buttons. */
 export function Controls(props: { readonly live: Live }): JSX.Element {
-  const [answer, setAnswer] = createSignal<{ readonly request: string; readonly answer: Answer } | null>(null);
+  const [answer, setAnswer] = createSignal<{ readonly request: RequestName; readonly answer: Answer } | null>(null);
   const [asking, setAsking] = createSignal<string | null>(null);
   const [resetting, setResetting] = createSignal(false);
   const [reason, setReason] = createSignal("");
   let reasonField: HTMLInputElement | undefined;
 
-  const ask = async (request: MachineRequest, name: string, why?: string): Promise<void> => {
+  const ask = async (request: MachineRequest, name: RequestName, why?: string): Promise<void> => {
     setAsking(name);
     setAnswer(null);
     const result = await props.live.ask(request, why);
@@ -23,11 +24,11 @@ export function Controls(props: { readonly live: Live }): JSX.Element {
       setReason("");
     }
   };
-  const refusal = (request: string): string | null => whyNot(props.live, request);
+  const refusal = (request: RequestName): string | null => whyNot(props.live, request);
 
   return (
     <section class="panel" aria-labelledby="machine-title">
-      <h2 id="machine-title">Machine</h2>
+      <h2 id="machine-title">{words().shell.machine.title}</h2>
       <ul class="controls">
         <For each={REQUESTS}>
           {(entry) => (
@@ -47,10 +48,15 @@ export function Controls(props: { readonly live: Live }): JSX.Element {
                   }
                 }}
               >
-                {entry.word}
+                {words().shell.machine[entry.request]}
               </button>
-              <span class="why-not" id={`why-not-${entry.request}`} data-testid={`why-not-${entry.request}`}>
-                {refusal(entry.request) ?? entry.does}
+              <span
+                class="why-not"
+                id={`why-not-${entry.request}`}
+                data-testid={`why-not-${entry.request}`}
+                lang={refusalOf(props.live, entry.request)?.lang}
+              >
+                {refusal(entry.request) ?? words().shell.machine[entry.does]}
               </span>
             </li>
           )}
@@ -64,7 +70,7 @@ export function Controls(props: { readonly live: Live }): JSX.Element {
             if (reason().trim() !== "") void ask("reset", "reset", reason().trim());
           }}
         >
-          <label for="reset-reason">Why is it safe to reset?</label>
+          <label for="reset-reason">{words().shell.machine.resetWhy}</label>
           <input
             id="reset-reason"
             data-testid="reset-reason"
@@ -76,7 +82,7 @@ export function Controls(props: { readonly live: Live }): JSX.Element {
             onInput={(event) => setReason(event.currentTarget.value)}
           />
           <button type="submit" data-testid="reset-confirm" disabled={reason().trim() === "" || asking() === "reset"}>
-            Reset, start nothing
+            {words().shell.machine.resetConfirm}
           </button>
         </form>
       </Show>
@@ -88,7 +94,8 @@ export function Controls(props: { readonly live: Live }): JSX.Element {
             data-testid="answer"
             classList={{ refused: last().answer.kind === "unanswered" || outcomeOf(last().answer) === "refused" }}
           >
-            {last().request}: {wordsOf(last().answer)}
+            {words().shell.machine.request[last().request]}: {outcomeWords(last().answer)}
+            <Show when={last().answer.detail}>{(detail) => <span lang="en">, {detail()}</span>}</Show>
           </p>
         )}
       </Show>
@@ -98,11 +105,18 @@ export function Controls(props: { readonly live: Live }): JSX.Element {
 
 /** Why a request cannot be made now; null if it can. */
 export function whyNot(live: Live, request: string): string | null {
+  return refusalOf(live, request)?.text ?? null;
+}
+
+/** The same, with the language of the server's words; the page's own need none. */
+function refusalOf(live: Live, request: string): { readonly text: string; readonly lang?: "en" } | null {
   const freshness = live.freshness();
-  if (freshness.kind === "none") return "no state from the server yet";
-  if (freshness.kind === "stale") return "the state shown is stale";
+  const say = words().shell.machine;
+  if (freshness.kind === "none") return { text: say.stateNone };
+  if (freshness.kind === "stale") return { text: say.stateStale };
   const state = live.snapshot()?.requests.find((entry) => entry.request === request);
-  return state === undefined ? "the server does not offer it" : state.refused_because;
+  if (state === undefined) return { text: say.notOffered };
+  return state.refused_because === null ? null : { text: state.refused_because, lang: "en" };
 }
 
 function outcomeOf(answer: Answer): string | null {
@@ -111,14 +125,19 @@ function outcomeOf(answer: Answer): string | null {
 
 /** An answer in words. */
 export function wordsOf(answer: Answer): string {
-  if (answer.kind === "unanswered") return `unanswered, ${answer.detail}`;
-  const word = { accepted: "accepted", already_so: "already so", refused: "refused" }[answer.outcome];
-  return answer.detail === "" ? word : `${word}, ${answer.detail}`;
+  return answer.detail === "" ? outcomeWords(answer) : `${outcomeWords(answer)}, ${answer.detail}`;
 }
 
+function outcomeWords(answer: Answer): string {
+  const say = words().shell.machine;
+  return answer.kind === "unanswered" ? say.unanswered : say.outcome[answer.outcome];
+}
+
+type RequestName = (typeof REQUESTS)[number]["request"];
+
 const REQUESTS = [
-  { request: "home", word: "Home", does: "finds the switches; the arena must be clear" },
-  { request: "arm", word: "Arm", does: "follows the visitor" },
-  { request: "disarm", word: "Disarm", does: "brakes and releases the drive" },
-  { request: "reset", word: "Reset…", does: "leaves the stop; starts nothing" },
+  { request: "home", does: "homeDoes" },
+  { request: "arm", does: "armDoes" },
+  { request: "disarm", does: "disarmDoes" },
+  { request: "reset", does: "resetDoes" },
 ] as const;

@@ -1,5 +1,6 @@
 /** The mode in big words. */
 import { createMemo, Show, type JSX } from "solid-js";
+import { words } from "../i18n";
 import type { Live } from "../live/live";
 import { labelOf } from "../lib/labels";
 import { modeWords, span } from "../lib/format";
@@ -13,7 +14,7 @@ export function ModeBlock(props: { readonly live: Live }): JSX.Element {
     const state = snapshot();
     if (state === null || state.column.serves === null || !follows()) return null;
     const id = state.column.serves;
-    return state.persons.find((person) => person.id === id)?.name ?? `person ${id}`;
+    return state.persons.find((person) => person.id === id)?.name ?? words().shell.mode.person(id);
   });
   const committed = createMemo(() => {
     const id = snapshot()?.column.committed ?? null;
@@ -21,20 +22,20 @@ export function ModeBlock(props: { readonly live: Live }): JSX.Element {
   });
   return (
     <div class="mode fades" data-mode={snapshot()?.mode ?? "unknown"}>
-      <Show when={snapshot()} fallback={<p class="mode-word" data-testid="mode">Unknown</p>}>
+      <Show when={snapshot()} fallback={<p class="mode-word" data-testid="mode">{words().shell.mode.unknown}</p>}>
         {(state) => (
           <>
-            <p class="mode-word" role="status" data-testid="mode" data-mode={state().mode}>
+            <p class="mode-word" role="status" aria-live="assertive" data-testid="mode" data-mode={state().mode}>
               {modeWords(state().mode)}
             </p>
             <p class="mode-more">
-              for {span((state().at_micros - state().mode_since_micros) / 1e6)}
-              <Show when={serves()}>{(name) => <> · serves {name()}</>}</Show>
+              {words().shell.mode.since(span((state().at_micros - state().mode_since_micros) / 1e6))}
+              <Show when={serves()}>{(name) => <> · {words().shell.mode.serves(name())}</>}</Show>
               <Show when={committed()}>
                 {(label) => (
                   <>
                     {" "}
-                    · predicts <b class="predicted-word" data-testid="predicted">{label()}</b>
+                    · {words().shell.mode.predicts} <b class="predicted-word" data-testid="predicted">{label()}</b>
                   </>
                 )}
               </Show>

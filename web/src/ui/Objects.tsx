@@ -7,7 +7,7 @@ import { dayAndTime, lateBySecs, percent, timeOfDay } from "../lib/format";
 import { labelOf } from "../lib/labels";
 
 /** Table, sliders, and who changed what. */
-export function Objects(props: { readonly live: Live; readonly author: string; readonly setAuthor: (author: string) => void }): JSX.Element {
+export function Objects(props: { readonly live: Live; readonly author: string }): JSX.Element {
   const [changes, setChanges] = createSignal<readonly PriorChange[]>([]);
   const [trouble, setTrouble] = createSignal<string | null>(null);
   const objects = (): readonly ObjectState[] => props.live.snapshot()?.objects ?? [];
@@ -46,16 +46,6 @@ export function Objects(props: { readonly live: Live; readonly author: string; r
     <section class="panel grows objects" aria-labelledby="objects-title">
       <h2 id="objects-title">
         Objects <small>rule: {props.live.snapshot()?.intention_rule ?? "unknown"}</small>
-        <label class="author">
-          you are
-          <input
-            type="text"
-            data-testid="author"
-            maxlength="40"
-            value={props.author}
-            onChange={(event) => { props.setAuthor(event.currentTarget.value); }}
-          />
-        </label>
       </h2>
       <div class="scrolls" tabindex="0" role="region" aria-label="Table of objects">
         <table>

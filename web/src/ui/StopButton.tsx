@@ -1,5 +1,6 @@
 /** The software stop: on every view, always enabled, by pointer, touch and keyboard. */
 import { onCleanup, onMount, type JSX } from "solid-js";
+import { words } from "../i18n";
 
 /** The button, with what it is and what it is not. */
 export function StopButton(props: { readonly press: () => void }): JSX.Element {
@@ -25,8 +26,9 @@ export function StopButton(props: { readonly press: () => void }): JSX.Element {
   return (
     <div class="stop-corner">
       <p class="stop-note" id="stop-note">
-        <b>Keys:</b> <kbd>Esc</kbd> always, <kbd>Space</kbd> unless typing. <br />
-        Not the emergency stop: the wired stop chain is elsewhere.
+        <b>{words().shell.stop.keys}</b> <kbd>Esc</kbd> {words().shell.stop.always} <kbd>{words().shell.stop.space}</kbd>{" "}
+        {words().shell.stop.unlessTyping} <br />
+        {words().shell.stop.notTheEmergencyStop}
       </p>
       <button
         type="button"
@@ -42,8 +44,8 @@ export function StopButton(props: { readonly press: () => void }): JSX.Element {
           if (event.detail === 0) props.press();
         }}
       >
-        <span class="stop-word">STOP</span>
-        <span class="stop-kind">software stop</span>
+        <span class="stop-word">{words().shell.stop.word}</span>
+        <span class="stop-kind">{words().shell.stop.kind}</span>
       </button>
     </div>
   );

@@ -1,5 +1,6 @@
 /** What became of the last press of the stop; never says stopped before the server did. */
 import { createSignal, Match, Show, Switch, type JSX } from "solid-js";
+import { words } from "../i18n";
 import type { StopState } from "../live/stop";
 import { millis, span } from "../lib/format";
 
@@ -17,27 +18,27 @@ export function StopReport(props: { readonly stop: StopState; readonly nowMillis
         <Match when={pending()}>
           {(state) => (
             <div class="bar bar-pending" data-testid="stop-pending">
-              <b>NOT ACKNOWLEDGED, retrying.</b>
+              <b>{words().shell.stop.notAcknowledged}</b>
               <span aria-hidden="true">
-                {span(Math.max(0, props.nowMillis - state().pressedAtMillis) / 1000)} since the press, sent{" "}
-                {state().sent} times{state().trouble === null ? "" : `; ${state().trouble ?? ""}`}
+                {words().shell.stop.sincePress(span(Math.max(0, props.nowMillis - state().pressedAtMillis) / 1000), state().sent)}
+                <Show when={state().trouble}>{(trouble) => <span lang="en">; {trouble()}</span>}</Show>
               </span>
-              <b class="bar-end">If it moves: use the wired stop.</b>
+              <b class="bar-end">{words().shell.stop.wired}</b>
             </div>
           )}
         </Match>
         <Match when={acknowledged()}>
           {(state) => (
             <div class="bar bar-acknowledged" data-testid="stop-acknowledged" data-lane={state().lane}>
-              <b>stopped: acknowledged in {millis(state().acknowledgedMillis)},</b>
+              <b>{words().shell.stop.acknowledged(millis(state().acknowledgedMillis))}</b>
               <span>
-                {reached(state().toDriveMicros)}, by {state().lane === "websocket" ? "WebSocket" : "HTTP"}
+                {reached(state().toDriveMicros)}, {words().shell.stop.by(state().lane === "websocket" ? "WebSocket" : "HTTP")}
               </span>
               <Show when={state().sent > 1}>
-                <span>(sent {state().sent} times)</span>
+                <span>{words().shell.stop.sentTimes(state().sent)}</span>
               </Show>
               <button type="button" class="quiet bar-end" onClick={() => setPutAway(state().pressedAtMillis)}>
-                Put away
+                {words().shell.stop.putAway}
               </button>
             </div>
           )}
@@ -48,5 +49,5 @@ export function StopReport(props: { readonly stop: StopState; readonly nowMillis
 }
 
 function reached(toDriveMicros: number | null): string {
-  return toDriveMicros === null ? "the drive was stopped already" : `reached the drive in ${millis(toDriveMicros / 1000)}`;
+  return toDriveMicros === null ? words().shell.stop.stoppedAlready : words().shell.stop.reachedDrive(millis(toDriveMicros / 1000));
 }

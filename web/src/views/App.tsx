@@ -1,109 +1,108 @@
 /** The page: stop, mode and banners on every view; which view by the address's hash. */
-import { createSignal, Match, onCleanup, onMount, Show, Switch, For, type JSX } from "solid-js";
-import { createLive } from "../live/live";
+import { createEffect, createSignal, Match, Show, Switch, type JSX } from "solid-js";
+import { words } from "../i18n";
+import { createAppearance } from "../lib/appearance";
 import { readAuthor, writeAuthor } from "../lib/author";
+import { createFileDrop } from "../lib/drop";
+import { createPreferences } from "../lib/preferences";
+import { listenForShortcuts } from "../lib/shortcuts";
+import { createLive } from "../live/live";
 import { Banners } from "../ui/Banners";
-import { ModeBlock } from "../ui/ModeBlock";
-import { StopButton } from "../ui/StopButton";
+import { Header } from "../ui/Header";
+import { KEYS_OF_THE_LIST, useShellShortcuts } from "../ui/keys";
+import { ShortcutsDialog } from "../ui/ShortcutsDialog";
 import { StopReport } from "../ui/StopReport";
 import { Strip } from "../ui/Strip";
 import { LiveView } from "./LiveView";
+import { createRoute } from "./route";
 import { ScenesView } from "./ScenesView";
 import { SessionsView } from "./SessionsView";
+import { SettingsView } from "./SettingsView";
 import { createUpload } from "./upload";
-
-type ViewName = "live" | "scenes" | "sessions";
 
 /** The whole dashboard. */
 export function App(): JSX.Element {
   const live = createLive();
-  const [view, setView] = createSignal<ViewName>(viewOf(location.hash));
+  const route = createRoute();
   const [author, setAuthor] = createSignal(readAuthor());
-  const [dragging, setDragging] = createSignal(false);
+  const store = createPreferences(author());
+  const appearance = createAppearance(store);
   const upload = createUpload(author);
+  const [listed, setListed] = createSignal(false);
+  const [said, say] = createSignal("");
+  const dragging = createFileDrop((file) => {
+    location.hash = "#/scenes";
+    void upload.send(file);
+  });
 
   const keepAuthor = (name: string): void => {
     setAuthor(writeAuthor(name));
+    store.switchTo(author());
   };
-
-  onMount(() => {
-    const hashChanged = (): void => {
-      setView(viewOf(location.hash));
-    };
-    const over = (event: DragEvent): void => {
-      if (event.dataTransfer?.types.includes("Files") !== true) return;
-      event.preventDefault();
-      setDragging(true);
-    };
-    const out = (event: DragEvent): void => {
-      if (event.relatedTarget === null) setDragging(false);
-    };
-    const drop = (event: DragEvent): void => {
-      setDragging(false);
-      const file = event.dataTransfer?.files[0];
-      if (file === undefined) return;
-      event.preventDefault();
-      location.hash = "#/scenes";
-      void upload.send(file);
-    };
-    window.addEventListener("hashchange", hashChanged);
-    window.addEventListener("dragover", over);
-    window.addEventListener("dragleave", out);
-    window.addEventListener("drop", drop);
-    onCleanup(() => {
-      window.removeEventListener("hashchange", hashChanged);
-      window.removeEventListener("dragover", over);
-      window.removeEventListener("dragleave", out);
-      window.removeEventListener("drop", drop);
-    });
+  useShellShortcuts({
+    live,
+    appearance,
+    toggleHelp: () => setListed((open) => !open),
+    closeHelp: () => setListed(false),
+    say,
+  });
+  const usesShortcuts = (): boolean => store.preferences().shortcuts !== false;
+  listenForShortcuts(usesShortcuts, () => (listed() ? KEYS_OF_THE_LIST : null));
+  createEffect(() => {
+    document.title = `${words().shell.pages[route().view]} · CoVR`;
   });
 
   return (
     <div class="page" classList={{ stale: live.freshness().kind !== "live" }}>
-      <header class="top">
-        <ModeBlock live={live} />
-        <nav aria-label="Views">
-          <For each={VIEWS}>
-            {(entry) => (
-              <a href={`#/${entry.view}`} data-testid={`view-${entry.view}`} aria-current={view() === entry.view ? "page" : undefined}>
-                {entry.word}
-              </a>
-            )}
-          </For>
-        </nav>
-        <StopButton press={live.pressStop} />
-      </header>
+      <Header
+        live={live}
+        view={route().view}
+        author={author()}
+        setAuthor={keepAuthor}
+        appearance={appearance}
+        help={() => setListed(true)}
+        behind={listed()}
+      />
       <div class="bars">
         <StopReport stop={live.stop()} nowMillis={live.nowMillis()} />
         <Banners live={live} />
+        <p class="unseen" role="status" data-testid="said">
+          {said()}
+        </p>
       </div>
-      <main>
+      <main inert={listed()}>
         <Switch>
-          <Match when={view() === "live"}>
-            <LiveView live={live} author={author()} setAuthor={keepAuthor} />
+          <Match when={route().view === "live"}>
+            <LiveView live={live} author={author()} preferences={store} />
           </Match>
-          <Match when={view() === "scenes"}>
+          <Match when={route().view === "scenes"}>
             <ScenesView live={live} upload={upload} author={author()} />
           </Match>
-          <Match when={view() === "sessions"}>
+          <Match when={route().view === "sessions"}>
             <SessionsView live={live} />
+          </Match>
+          <Match when={route().view === "settings"}>
+            <SettingsView
+              live={live}
+              author={author()}
+              setAuthor={keepAuthor}
+              preferences={store}
+              showShortcuts={() => setListed(true)}
+            />
           </Match>
         </Switch>
       </main>
       <Strip live={live} />
+      <Show when={listed()}>
+        <ShortcutsDialog
+          enabled={usesShortcuts()}
+          enable={(shortcuts) => { store.change({ shortcuts }); }}
+          close={() => setListed(false)}
+        />
+      </Show>
       <Show when={dragging()}>
-        <div class="drop-hint">Drop the scene's JSON file to upload it</div>
+        <div class="drop-hint">{words().shell.dropHint}</div>
       </Show>
     </div>
   );
 }
-
-function viewOf(hash: string): ViewName {
-  return VIEWS.find((entry) => hash === `#/${entry.view}`)?.view ?? "live";
-}
-
-const VIEWS: readonly { readonly view: ViewName; readonly word: string }[] = [
-  { view: "live", word: "Live" },
-  { view: "scenes", word: "Scenes" },
-  { view: "sessions", word: "Sessions" },
-];

@@ -1,5 +1,6 @@
 /** Everything about the running machine on one screen. */
 import type { JSX } from "solid-js";
+import type { PreferenceStore } from "../lib/preferences";
 import type { Live } from "../live/live";
 import { Controls } from "../ui/Controls";
 import { Events } from "../ui/Events";
@@ -12,7 +13,8 @@ import { TopView } from "../ui/TopView";
 export function LiveView(props: {
   readonly live: Live;
   readonly author: string;
-  readonly setAuthor: (author: string) => void;
+  /** What the present user likes. */
+  readonly preferences: PreferenceStore;
 }): JSX.Element {
   return (
     <div class="live">
@@ -24,7 +26,7 @@ export function LiveView(props: {
       </div>
       <TopView live={props.live} />
       <div class="side">
-        <Objects live={props.live} author={props.author} setAuthor={props.setAuthor} />
+        <Objects live={props.live} author={props.author} />
         <Events live={props.live} />
       </div>
     </div>
