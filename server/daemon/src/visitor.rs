@@ -11,7 +11,7 @@ use std::time::Duration;
 use anyhow::{Context, bail};
 use covr_engine::frames::{Pose, Room};
 use covr_engine::time::Time;
-use covr_study::visitor::Visitor as MadeUp;
+use covr_study::visitor::{Phase, Visitor as MadeUp, VisitorSample};
 use covr_wire::scene::{SceneDocument, build_scene};
 
 use crate::cli::Visitor;
@@ -76,9 +76,11 @@ async fn play_recordings(
             "a recorded person enters"
         );
         let room_from_trace = recording.room_from_trace();
-        let samples = recording
-            .resampled(SEND_HZ / options.speed)
-            .map(|sample| (sample.at, room_from_trace.pose(&sample.pose)));
+        let samples = recording.resampled(SEND_HZ / options.speed).map(|sample| Moment {
+            at: sample.at,
+            head: room_from_trace.pose(&sample.pose),
+            touches: None,
+        });
         play(options, headset, samples).await?;
     }
 }
@@ -96,10 +98,10 @@ async fn walk_for_ever(
             )
         })?;
         tracing::info!(scene = document.name, "a made-up person enters");
+        let ids: Vec<String> = scene.spec().objects.iter().map(|object| object.id.clone()).collect();
         let mut person =
             MadeUp::of_scene(scene.spec(), SEND_HZ / options.speed, options.seed.wrapping_add(walk));
-        let samples =
-            std::iter::from_fn(move || Some(person.sample()).map(|sample| (sample.at, sample.pose)));
+        let samples = std::iter::from_fn(move || Some(Moment::of_made_up(&person.sample(), &ids)));
         play(options, headset, samples).await?;
     }
     bail!("the visitor walked for ever")
@@ -109,21 +111,46 @@ async fn walk_for_ever(
 async fn play(
     options: &Visitor,
     headset: &mut Headset,
-    mut samples: impl Iterator<Item = (Time, Pose<Room>)>,
+    mut samples: impl Iterator<Item = Moment>,
 ) -> anyhow::Result<()> {
     let scene_version = headset.scene_version();
-    let Some((first, pose)) = samples.next() else { return Ok(()) };
-    headset.enter(&options.name, &pose).await?;
+    let Some(first) = samples.next() else { return Ok(()) };
+    headset.enter(&options.name, &first.head).await?;
     let started = tokio::time::Instant::now();
-    for (at, pose) in samples {
-        let since_first = (at - first).secs() / options.speed;
+    let mut touches: Option<String> = None;
+    for moment in samples {
+        let since_first = (moment.at - first.at).secs() / options.speed;
         headset.listen_until(started + Duration::from_secs_f64(since_first.max(0.0))).await?;
         if options.trace.is_none() && headset.scene_version() != scene_version {
             break;
         }
-        headset.send_pose(&options.name, &pose).await.context("a pose")?;
+        headset.send_pose(&options.name, &moment.head).await.context("a pose")?;
+        if touches != moment.touches {
+            if let Some(object) = std::mem::replace(&mut touches, moment.touches) {
+                headset.let_go(&options.name, &object).await?;
+            }
+            if let Some(object) = &touches {
+                headset.touch(&options.name, object).await?;
+            }
+        }
     }
     headset.leave(&options.name).await
+}
+
+/// A person at one moment.
+struct Moment {
+    at: Time,
+    head: Pose<Room>,
+    /// The object at which the hand is. Recordings do not say.
+    touches: Option<String>,
+}
+
+impl Moment {
+    fn of_made_up(sample: &VisitorSample, objects: &[String]) -> Self {
+        let touched = sample.goal.filter(|_| sample.phase == Phase::Dwells);
+        let touches = touched.and_then(|goal| objects.get(goal)).cloned();
+        Self { at: sample.at, head: sample.pose, touches }
+    }
 }
 
 /// Within the protocol's 60 to 120 Hz, whatever the speed.

@@ -6,7 +6,7 @@ use anyhow::Context;
 use covr_engine::frames::{Pose, RigidMap, Room, Tracking};
 use covr_wire::client::{
     ActiveScene, ClientHello, ClockPing, Convention, Encoding, Frame, FromClient, HeadPose, JSON_SUBPROTOCOL,
-    PersonName, PongReceived, ToClient, decode_from_server,
+    PersonName, PongReceived, ToClient, Touch, decode_from_server,
 };
 use covr_wire::convention::ClientFrame;
 use covr_wire::scene::SceneDocument;
@@ -92,6 +92,22 @@ impl Headset {
             hands: None,
         };
         self.say(&FromClient::Pose(pose)).await
+    }
+
+    /// The person's hand is at an object.
+    pub async fn touch(&mut self, person: &str, object: &str) -> anyhow::Result<()> {
+        let touch = self.touch_now(person, object);
+        self.say(&FromClient::TouchBegan(touch)).await
+    }
+
+    /// The person's hand leaves an object.
+    pub async fn let_go(&mut self, person: &str, object: &str) -> anyhow::Result<()> {
+        let touch = self.touch_now(person, object);
+        self.say(&FromClient::TouchEnded(touch)).await
+    }
+
+    fn touch_now(&self, person: &str, object: &str) -> Touch {
+        Touch { person: person.into(), object: object.into(), client_time_micros: self.now_micros() }
     }
 
     /// Hear what the server says, and exchange clocks, until a moment.
