@@ -10,6 +10,8 @@ fn main() -> io::Result<()> {
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default()).join("web");
     let web = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web");
     println!("cargo::rerun-if-env-changed=COVR_SKIP_WEB");
+    println!("cargo::rerun-if-env-changed=COVR_COMMIT");
+    say_what_builds();
     for input in INPUTS {
         println!("cargo::rerun-if-changed={}", web.join(input).display());
     }
@@ -33,6 +35,15 @@ fn main() -> io::Result<()> {
         return Ok(());
     };
     fs::write(out.join("index.html"), PAGE.replace("WHY", why_not))
+}
+
+/// For `GET /api/v1/config`.
+fn say_what_builds() {
+    let rustc = env::var_os("RUSTC").map(|rustc| Command::new(rustc).arg("--version").output());
+    let rustc =
+        rustc.and_then(Result::ok).and_then(|done| String::from_utf8(done.stdout).ok()).unwrap_or_default();
+    println!("cargo::rustc-env=COVR_RUSTC={}", rustc.trim());
+    println!("cargo::rustc-env=COVR_TARGET={}", env::var("TARGET").unwrap_or_default());
 }
 
 /// `npm ci` when the lock file is newer than the last one.

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the report")]
 
 mod clients;
+mod config;
 mod dashboards;
 mod guards;
 mod machine;
@@ -10,4 +11,5 @@ mod person;
 mod priors;
 mod record;
 mod scenes;
+mod sessions;
 mod visitor;

@@ -44,6 +44,46 @@ async fn after_kill_9_in_a_session_everything_acknowledged_is_there_and_the_mach
 }
 
 #[tokio::test]
+async fn after_kill_9_in_a_recording_everything_up_to_the_last_second_is_there() {
+    let dir = TempDir::new().unwrap();
+    let server = Process::serve(dir.path()).await;
+    server.good("POST", "/api/v1/home", None).await;
+    eventually_within(HOMED, "homed", || async {
+        let state = server.good("GET", "/api/v1/state", None).await;
+        (state["mode"] == "ready").then_some(())
+    })
+    .await;
+    server.good("POST", "/api/v1/arm", None).await;
+    let last_seen = eventually_within(HOMED, "four seconds are recorded", || async {
+        let state = server.good("GET", "/api/v1/state", None).await;
+        let sessions = server.good("GET", "/api/v1/sessions", None).await;
+        (sessions[0]["recorded_frames"].as_u64()? >= 120).then_some(state["at_micros"].as_i64().unwrap())
+    })
+    .await;
+    server.kill_9();
+
+    let server = Process::serve(dir.path()).await;
+    let session = server.good("GET", "/api/v1/sessions/1", None).await;
+    assert_eq!(session["how"], "interrupted");
+    let frames = server.good("GET", "/api/v1/sessions/1/frames", None).await;
+    let at: Vec<i64> =
+        frames["frames"].as_array().unwrap().iter().map(|f| f["at_micros"].as_i64().unwrap()).collect();
+    assert!(at.len() >= 120 && at.is_sorted(), "{at:?}");
+    let (first, last) = (session["first_micros"].as_i64().unwrap(), session["last_micros"].as_i64().unwrap());
+    // One chunk of a second may be in the making, and one on its way to the disk.
+    let missing = last_seen - at.last().unwrap();
+    assert!(missing < 2_500_000, "{missing} us of the recording are missing");
+    assert_eq!(last, *at.last().unwrap(), "nothing was heard later");
+    let length = session["length_secs"].as_f64().unwrap();
+    assert!((length - (last - first) as f64 * 1e-6).abs() < 1e-5, "{length} s, {first} to {last} us");
+    let gaps = at.windows(2).map(|two| two[1] - two[0]).max();
+    let dropped = session["dropped_frames"].as_u64().unwrap();
+    assert!(gaps < Some(1_000_000) || dropped > 0, "a gap of {gaps:?} us that nobody counted");
+    // The next session of the same database is recorded as its own.
+    assert_eq!(server.good("GET", "/api/v1/sessions/1/events", None).await[0]["detail"]["to"], "following");
+}
+
+#[tokio::test]
 async fn a_latched_stop_survives_kill_9_and_its_reset_does_too() {
     let dir = TempDir::new().unwrap();
     let server = Process::serve(dir.path()).await;

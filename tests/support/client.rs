@@ -63,11 +63,16 @@ impl VrClient {
         self.say(&message).await;
     }
 
+    /// This client's clock, microseconds.
+    pub fn now_micros(&self) -> i64 {
+        self.started.elapsed().as_micros() as i64
+    }
+
     /// A good pose as a message. OpenXR: right is room -y, back is room -x.
     pub fn pose_message(&self, person: &str, x_m: f64, y_m: f64, sequence: u32) -> Value {
         json!({
             "type": "pose", "person": person, "sequence": sequence,
-            "client_time_micros": self.started.elapsed().as_micros() as i64,
+            "client_time_micros": self.now_micros(),
             "position": [-y_m, 1.7, -x_m], "orientation": [0.0, 0.0, 0.0, 1.0],
             "tracked": true, "worn": true,
         })

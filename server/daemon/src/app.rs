@@ -13,10 +13,11 @@ use tokio::sync::{Semaphore, watch};
 
 use crate::clients::Clients;
 use crate::clock::Clock;
-use crate::config::Config;
+use crate::config::{Config, Origins};
 use crate::control::{Control, NotDelivered, NotReached, StopLaneName};
 use crate::persons::Persons;
 use crate::recorder::{Recorder, Settled};
+use crate::recording::Recording;
 use crate::stage::Stage;
 use crate::store::Store;
 
@@ -24,6 +25,8 @@ use crate::store::Store;
 pub struct App {
     /// The configuration.
     pub config: Config,
+    /// Who set what of it.
+    pub origins: Origins,
     /// The clock.
     pub clock: Clock,
     /// The control thread.
@@ -32,6 +35,8 @@ pub struct App {
     pub store: Store,
     /// The recorder.
     pub recorder: Recorder,
+    /// What records sessions.
+    pub recording: Recording,
     /// Who is who.
     pub persons: Arc<Persons>,
     /// The active scene.

@@ -5,6 +5,7 @@
 
 mod keys;
 mod load;
+mod origins;
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -15,6 +16,7 @@ use covr_engine::machine::{AxisLimits, Limits, Travel};
 
 pub use keys::{Key, all as keys};
 pub use load::{ConfigError, load, load_text, reference};
+pub use origins::{Loaded, Origins};
 
 /// Everything that can be configured.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +29,8 @@ pub struct Config {
     pub machine: Machine,
     /// What is known of people.
     pub people: People,
+    /// The recording of sessions.
+    pub recording: Recording,
     /// VR clients.
     pub clients: Clients,
     /// Dashboards.
@@ -94,6 +98,17 @@ pub struct People {
     pub intention_rule: RuleName,
     /// v_h of the separation rule, m/s.
     pub v_h_mps: f64,
+}
+
+/// The recording of sessions.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Recording {
+    /// Whether sessions are recorded.
+    pub enabled: bool,
+    /// Days after which a recording is deleted; 0: never.
+    pub keep_days: usize,
+    /// Most of all recordings together, MB; 0: any.
+    pub keep_megabytes: usize,
 }
 
 /// VR clients.
@@ -165,6 +180,7 @@ impl Default for Config {
                 y: AxisLimits::PAPER,
             },
             people: People { intention_rule: RuleName::PaperBest, v_h_mps: 1.6 },
+            recording: Recording { enabled: true, keep_days: 365, keep_megabytes: 20_000 },
             clients: Clients {
                 most: 8,
                 persons_each: 2,

@@ -1,5 +1,6 @@
 //! HTTP: handlers check, convert and pass on. Every error under /api is a problem document.
 
+mod config;
 mod guard;
 mod health;
 mod input;
@@ -8,6 +9,7 @@ mod openapi;
 mod problem;
 mod records;
 mod scenes;
+mod sessions;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -38,7 +40,14 @@ use crate::{web, ws};
 pub fn router(app: Arc<App>) -> Router {
     let (api, document) = openapi::split(
         openapi::base()
-            .nest("/api/v1", machine::routes().merge(scenes::routes()).merge(records::routes()))
+            .nest(
+                "/api/v1",
+                machine::routes()
+                    .merge(scenes::routes())
+                    .merge(records::routes())
+                    .merge(sessions::routes())
+                    .merge(config::routes()),
+            )
             .merge(health::routes()),
     );
     let time_out = Duration::from_secs_f64(app.config.server.request_timeout_secs);

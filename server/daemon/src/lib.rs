@@ -16,6 +16,7 @@ pub mod live;
 pub mod logs;
 pub mod persons;
 pub mod recorder;
+pub mod recording;
 pub mod serve;
 pub mod stage;
 pub mod store;

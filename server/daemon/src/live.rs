@@ -72,6 +72,7 @@ impl Meter {
             gauge!("covr_mode", "mode" => mode.name()).set(if is_it { 1.0 } else { 0.0 });
         }
         counter!("covr_events_dropped_total").absolute(app.control.events_dropped() + app.recorder.dropped());
+        counter!("covr_recording_dropped_frames_total").absolute(app.recording.dropped());
         gauge!("covr_clients").set(app.clients.list().len() as f64);
         gauge!("covr_dashboards").set(dashboards as f64);
         gauge!("covr_persons").set(published.snapshot.persons.len() as f64);

@@ -31,14 +31,14 @@ fn main() -> ExitCode {
 }
 
 fn serve(options: Serve) -> anyhow::Result<()> {
-    let mut config = config::load(options.config.as_deref(), std::env::vars())?;
-    config.server.bind = options.bind.unwrap_or(config.server.bind);
-    config.server.database = options.database.unwrap_or(config.server.database);
-    config.log.format = options.log_format.unwrap_or(config.log.format);
-    let _logs = logs::start(&config.log)?;
+    let mut loaded = config::load(options.config.as_deref(), std::env::vars())?;
+    loaded.set_by_command_line("server.bind", options.bind, |c| &mut c.server.bind);
+    loaded.set_by_command_line("server.database", options.database, |c| &mut c.server.database);
+    loaded.set_by_command_line("log.format", options.log_format, |c| &mut c.log.format);
+    let _logs = logs::start(&loaded.config.log)?;
     let reach = if options.insecure_lan { Reach::InsecureLan } else { Reach::ThisMachine };
     runtime()?.block_on(async {
-        let server = Server::start(config, reach).await?;
+        let server = Server::start(loaded, reach).await?;
         tokio::spawn(stop_at_signal(server.app().clone()));
         server.run_until(told_by_signal()).await
     })

@@ -83,6 +83,11 @@ impl Persons {
         self.known().names.clone()
     }
 
+    /// The names of everybody in the arena.
+    pub fn inside(&self) -> Vec<String> {
+        self.known().inside.keys().map(|(_, person)| person.clone()).collect()
+    }
+
     /// Whether this number is in the arena.
     pub fn is_inside(&self, id: PersonId) -> bool {
         self.known().inside.values().any(|inside| inside.id == id)

@@ -1,20 +1,22 @@
 //! The recorder: takes events from a bounded queue, shows them to dashboards at once, and stores them in order.
 //! It alone writes sessions and the latch, so that they follow the order of events.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use covr_engine::event::EventKind;
 use covr_engine::mode::Mode;
-use covr_wire::dashboard::Event;
+use covr_engine::time::Time;
+use covr_wire::dashboard::{Event, MachineShape};
 use serde_json::Value;
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
-use crate::clock::{Clock, wall_now};
+use crate::clock::Clock;
 use crate::control::EngineEvent;
 use crate::persons::Persons;
 use crate::stage::Stage;
-use crate::store::{NewEvent, SessionEnd, Store, StoreError};
+use crate::store::{NewEvent, NewSession, SessionEnd, Store, StoreError};
 
 /// Something for the record.
 #[derive(Debug)]
@@ -25,8 +27,21 @@ pub enum Record {
     Act(Event),
     /// Say when everything before this is stored.
     Settle(oneshot::Sender<Settled>),
+    /// Say which sessions ran, by the events before this.
+    Spans(oneshot::Sender<Vec<SessionSpan>>),
     /// The server ends: close the session.
     End(oneshot::Sender<Settled>),
+}
+
+/// When a session ran, server time in microseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SessionSpan {
+    /// The store's number of the session.
+    pub id: i64,
+    /// Its first moment.
+    pub from_micros: i64,
+    /// Its last moment; none while it runs.
+    pub to_micros: Option<i64>,
 }
 
 /// Whether everything before was stored.
@@ -58,6 +73,8 @@ pub struct Desk {
     pub persons: Arc<Persons>,
     /// The active scene.
     pub stage: Arc<Stage>,
+    /// Column and travel.
+    pub machine_shape: MachineShape,
 }
 
 impl Recorder {
@@ -73,7 +90,10 @@ impl Recorder {
             dropped: Arc::default(),
             clock: desk.clock,
         };
-        tokio::spawn(Task { desk, live, session, pending: Vec::new(), lost: false }.run(records_out));
+        tokio::spawn(
+            Task { desk, live, session, spans: VecDeque::new(), pending: Vec::new(), lost: false }
+                .run(records_out),
+        );
         (recorder, records)
     }
 
@@ -100,6 +120,15 @@ impl Recorder {
     /// Close the session, at the end of the server.
     pub async fn end(&self) -> Settled {
         self.wait_for(Record::End).await
+    }
+
+    /// The newest sessions of this run, oldest first. Every state that was published before the call has its session in it.
+    pub async fn session_spans(&self) -> Vec<SessionSpan> {
+        let (told, spans) = oneshot::channel();
+        if self.records.send(Record::Spans(told)).await.is_err() {
+            return Vec::new();
+        }
+        spans.await.unwrap_or_default()
     }
 
     /// Events as they happen.
@@ -131,6 +160,7 @@ struct Task {
     desk: Desk,
     live: broadcast::Sender<Arc<Event>>,
     session: watch::Sender<Option<i64>>,
+    spans: VecDeque<SessionSpan>,
     pending: Vec<NewEvent>,
     lost: bool,
 }
@@ -161,20 +191,25 @@ impl Task {
                     None
                 };
                 if let Some((_, Mode::Following, _)) = change {
-                    self.begin_session(&at).await;
+                    self.begin_session(&at, event.at).await;
                 }
                 self.add(shown);
                 if let Some((from, to, because)) = change {
-                    self.mode_changed(&at, from, to, &because).await;
+                    self.mode_changed(&at, event.at, from, to, &because).await;
                 }
             }
             Record::Settle(done) => {
                 self.flush().await;
                 let _ = done.send(self.settled());
             }
+            Record::Spans(told) => {
+                // Whoever asked may have gone.
+                let _ = told.send(self.spans.iter().copied().collect());
+            }
             Record::End(done) => {
                 self.flush().await;
-                self.end_session(&wall_now(), SessionEnd::Shutdown).await;
+                let now = self.desk.clock.now();
+                self.end_session(&self.desk.clock.wall_text(now), now, SessionEnd::Shutdown).await;
                 let _ = done.send(self.settled());
             }
         }
@@ -195,7 +230,7 @@ impl Task {
         self.check(done, "events");
     }
 
-    async fn mode_changed(&mut self, at: &str, from: Mode, to: Mode, because: &str) {
+    async fn mode_changed(&mut self, at: &str, time: Time, from: Mode, to: Mode, because: &str) {
         if to == Mode::LatchedStop {
             let done = self.desk.store.set_latched(Some(because)).await;
             self.check(done, "the latched stop");
@@ -210,23 +245,37 @@ impl Task {
             Mode::Disarmed | Mode::Homing | Mode::Ready => SessionEnd::Disarmed,
         };
         self.flush().await;
-        self.end_session(at, end).await;
+        self.end_session(at, time, end).await;
     }
 
-    async fn begin_session(&mut self, at: &str) {
+    async fn begin_session(&mut self, at: &str, time: Time) {
         if self.session.borrow().is_some() {
             return;
         }
         self.flush().await;
-        let done = self.desk.store.begin_session(at, self.desk.stage.active().key()).await;
+        let session = NewSession {
+            started: at.into(),
+            started_micros: time.micros(),
+            scene: self.desk.stage.active().key(),
+            machine_shape: Some(self.desk.machine_shape.clone()),
+            persons: self.desk.persons.inside(),
+        };
+        let done = self.desk.store.begin_session(&session).await;
         if let Some(id) = self.check(done, "the session") {
+            if self.spans.len() == MOST_SPANS {
+                self.spans.pop_front();
+            }
+            self.spans.push_back(SessionSpan { id, from_micros: time.micros(), to_micros: None });
             self.session.send_replace(Some(id));
         }
     }
 
-    async fn end_session(&mut self, at: &str, how: SessionEnd) {
+    async fn end_session(&mut self, at: &str, time: Time, how: SessionEnd) {
         let Some(id) = self.session.send_replace(None) else { return };
-        let done = self.desk.store.end_session(id, at, how).await;
+        if let Some(span) = self.spans.back_mut() {
+            span.to_micros = Some(time.micros());
+        }
+        let done = self.desk.store.end_session(id, at, Some(time.micros()), how).await;
         self.check(done, "the end of the session");
     }
 
@@ -246,3 +295,5 @@ impl Task {
 
 const QUEUE: usize = 4_096;
 const BATCH: usize = 256;
+/// Sessions of this run that frames may still belong to.
+const MOST_SPANS: usize = 64;

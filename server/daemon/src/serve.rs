@@ -14,6 +14,7 @@ use covr_engine::{Engine, EngineConfig, Request};
 use covr_gantry::contract::Gantry;
 use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::MachineParameters;
+use covr_wire::dashboard::MachineShape;
 use covr_wire::scene::parse_scene;
 use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
 use tokio::net::TcpListener;
@@ -23,10 +24,11 @@ use tokio::task::JoinHandle;
 use crate::app::App;
 use crate::clients::Clients;
 use crate::clock::Clock;
-use crate::config::{Config, MachineKind};
+use crate::config::{Config, Loaded, MachineKind};
 use crate::control::{Control, Ended, Setup, StopLaneName};
 use crate::persons::Persons;
 use crate::recorder::{Desk, Recorder};
+use crate::recording::{Booth, Recording};
 use crate::stage::{ActiveScene, Stage};
 use crate::store::Store;
 use crate::{http, live};
@@ -50,7 +52,8 @@ pub enum Reach {
 
 impl Server {
     /// Start: store, control thread, sockets. The machine starts disarmed, or latched if the last run ended so.
-    pub async fn start(config: Config, reach: Reach) -> anyhow::Result<Self> {
+    pub async fn start(config: impl Into<Loaded>, reach: Reach) -> anyhow::Result<Self> {
+        let Loaded { config, origins } = config.into();
         check_reach(&config, reach)?;
         let prometheus = prometheus()?;
         let clock = Clock::started_now();
@@ -73,7 +76,13 @@ impl Server {
         let clients = Arc::new(Clients::new(config.clients.most));
         let scene = active.scene.clone();
         let stage = Arc::new(Stage::new(active));
-        let desk = Desk { store: store.clone(), clock, persons: persons.clone(), stage: stage.clone() };
+        let desk = Desk {
+            store: store.clone(),
+            clock,
+            persons: persons.clone(),
+            stage: stage.clone(),
+            machine_shape: MachineShape::new(&config.machine.travel(), &config.machine.limits()),
+        };
         let (recorder, events) = Recorder::start(desk, config.dashboards.event_queue);
         let period = Duration::from_secs_f64(1.0 / config.control.rate_hz);
         let engine_config = EngineConfig {
@@ -96,6 +105,13 @@ impl Server {
         })
         .context("the control thread")?;
         stage.restore_priors(&control, &priors).await?;
+        let recording = Recording::start(Booth {
+            store: store.clone(),
+            recorder: recorder.clone(),
+            persons: persons.clone(),
+            published: control.watch_published(),
+            settings: config.recording.clone(),
+        });
 
         let listener = TcpListener::bind(config.server.bind)
             .await
@@ -107,10 +123,12 @@ impl Server {
         live::describe_metrics();
         let app = Arc::new(App {
             config,
+            origins,
             clock,
             control,
             store,
             recorder,
+            recording,
             persons,
             stage,
             clients,
@@ -209,6 +227,7 @@ impl Server {
             self.http.abort();
         }
         self.app.recorder.end().await;
+        self.app.recording.finish().await;
         self.app.store.close().await;
         tracing::info!("closed");
     }

@@ -1,10 +1,11 @@
-//! What outlives the process: scenes, sessions, events, prior changes, and what the next start must know.
+//! What outlives the process: scenes, sessions with their recordings, events, prior changes, and what the next start must know.
 //!
 //! SQLite in WAL mode with `synchronous=FULL`: what a method has returned survives kill -9 and loss of power.
 //! The control loop never comes here.
 
 mod events;
 mod priors;
+mod recordings;
 mod scenes;
 mod sessions;
 
@@ -19,8 +20,9 @@ use sqlx::sqlite::{
 
 pub use events::NewEvent;
 pub use priors::{PriorChange, StoredPriorChange};
+pub use recordings::{Keep, NewChunk, StoredChunk};
 pub use scenes::{SceneVersion, StoredScene, StoredSceneVersion};
-pub use sessions::{SessionEnd, StoredSession};
+pub use sessions::{NewSession, SessionEnd, SessionFilter};
 
 /// The database.
 #[derive(Debug, Clone)]

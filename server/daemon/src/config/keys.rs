@@ -149,6 +149,21 @@ pub fn all() -> Vec<Key> {
             "v_h of the separation rule: how fast a person is assumed to come nearer, m/s (ISO 13855: 1.6).",
             Place::Number(1.6..=3.0, |c| &mut c.people.v_h_mps),
         ),
+        Key::new(
+            "recording.enabled",
+            "Record every session at control.publish_hz.",
+            Place::Switch(|c| &mut c.recording.enabled),
+        ),
+        Key::new(
+            "recording.keep_days",
+            "Days after its session's end at which a recording is deleted; 0: never. The session itself and its events stay.",
+            Place::Whole(0..=36_500, |c| &mut c.recording.keep_days),
+        ),
+        Key::new(
+            "recording.keep_megabytes",
+            "Size of all recordings together above which the oldest are deleted, MB; 0: any. An hour takes about 5 to 120. Space is used again; the file does not shrink.",
+            Place::Whole(0..=100_000_000, |c| &mut c.recording.keep_megabytes),
+        ),
         Key::new("clients.most", "VR clients at once.", Place::Whole(1..=64, |c| &mut c.clients.most)),
         Key::new(
             "clients.persons_each",

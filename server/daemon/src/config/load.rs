@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use toml::Value;
 
 use super::keys::{Key, all};
-use super::{Config, LogFormat};
+use covr_wire::records::ConfigOrigin;
+
+use super::{Config, Loaded, LogFormat};
 
 /// Why a configuration was refused.
 #[derive(Debug, thiserror::Error)]
@@ -55,15 +57,14 @@ pub enum ConfigError {
 pub fn load(
     file: Option<&Path>,
     environment: impl IntoIterator<Item = (String, String)>,
-) -> Result<Config, ConfigError> {
-    let mut config = match file {
-        None => Config::default(),
-        Some(path) => {
-            let text = std::fs::read_to_string(path)
-                .map_err(|source| ConfigError::Unreadable { path: path.into(), source })?;
-            load_text(&text, &path.display().to_string())?
-        }
-    };
+) -> Result<Loaded, ConfigError> {
+    let mut loaded = Loaded::default();
+    if let Some(path) = file {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ConfigError::Unreadable { path: path.into(), source })?;
+        loaded = load_text(&text, &path.display().to_string())?;
+        loaded.origins.read(path);
+    }
     for (name, found) in environment {
         let Some(key) = name.strip_prefix("COVR_").filter(|rest| rest.contains("__")) else { continue };
         let key = key.replace("__", ".").to_lowercase();
@@ -71,23 +72,25 @@ pub fn load(
             .ok()
             .and_then(|mut table| table.remove("v"))
             .unwrap_or(Value::String(found));
-        set(&mut config, &key, &value, &format!("environment variable {name}"))?;
+        let key = set(&mut loaded.config, &key, &value, &format!("environment variable {name}"))?;
+        loaded.origins.set(key, ConfigOrigin::Environment);
     }
-    Ok(config)
+    Ok(loaded)
 }
 
 /// The configuration of a TOML text.
-pub fn load_text(text: &str, origin: &str) -> Result<Config, ConfigError> {
+pub fn load_text(text: &str, origin: &str) -> Result<Loaded, ConfigError> {
     let table: toml::Table = toml::from_str(text)
         .map_err(|error| ConfigError::NotToml { origin: origin.into(), message: error.to_string() })?;
-    let mut config = Config::default();
+    let mut loaded = Loaded::default();
     let mut found = Vec::new();
     let whole = Value::Table(table);
     flatten("", &whole, &mut found);
     for (key, value) in found {
-        set(&mut config, &key, value, origin)?;
+        let key = set(&mut loaded.config, &key, value, origin)?;
+        loaded.origins.set(key, ConfigOrigin::File);
     }
-    Ok(config)
+    Ok(loaded)
 }
 
 /// A TOML text with every key, its meaning and the value of `config`.
@@ -118,7 +121,8 @@ impl std::str::FromStr for LogFormat {
     }
 }
 
-fn set(config: &mut Config, name: &str, value: &Value, origin: &str) -> Result<(), ConfigError> {
+/// Put a value in its place; the key's name.
+fn set(config: &mut Config, name: &str, value: &Value, origin: &str) -> Result<&'static str, ConfigError> {
     let keys = all();
     let Some(key) = keys.iter().find(|key| key.name == name) else {
         return Err(ConfigError::UnknownKey {
@@ -128,7 +132,7 @@ fn set(config: &mut Config, name: &str, value: &Value, origin: &str) -> Result<(
         });
     };
     if key.set(config, value) {
-        return Ok(());
+        return Ok(key.name);
     }
     Err(ConfigError::BadValue {
         origin: origin.into(),
@@ -167,7 +171,7 @@ mod tests {
     #[test]
     fn the_reference_reads_back_as_the_defaults() {
         let text = reference(&Config::default());
-        assert_eq!(load_text(&text, "reference").unwrap(), Config::default());
+        assert_eq!(load_text(&text, "reference").unwrap().config, Config::default());
     }
 
     #[test]
@@ -213,12 +217,30 @@ mod tests {
 
     #[test]
     fn the_environment_overrides_and_is_checked_as_well() {
-        let config = load(None, environment("COVR_SERVER__BIND", "127.0.0.1:9000")).unwrap();
-        assert_eq!(config.server.bind.port(), 9000);
-        let config = load(None, environment("COVR_MACHINE__X__SPEED_MPS", "0.5")).unwrap();
-        assert!((config.machine.x.speed_mps - 0.5).abs() < 1e-12);
+        let loaded = load(None, environment("COVR_SERVER__BIND", "127.0.0.1:9000")).unwrap();
+        assert_eq!(loaded.config.server.bind.port(), 9000);
+        let loaded = load(None, environment("COVR_MACHINE__X__SPEED_MPS", "0.5")).unwrap();
+        assert!((loaded.config.machine.x.speed_mps - 0.5).abs() < 1e-12);
         let error = load(None, environment("COVR_SERVER__BINT", "x")).unwrap_err();
         assert!(error.to_string().contains("did you mean `server.bind`"), "{error}");
-        assert_eq!(load(None, environment("COVR_SKIP_WEB", "1")).unwrap(), Config::default());
+        assert_eq!(load(None, environment("COVR_SKIP_WEB", "1")).unwrap(), Loaded::default());
+    }
+
+    #[test]
+    fn who_set_a_value_is_known_and_the_last_one_counts() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("covr.toml");
+        std::fs::write(&file, "[control]\nrate_hz = 250\npublish_hz = 20\n[log]\nlevel = \"warn\"\n")
+            .unwrap();
+        let mut loaded = load(Some(&file), environment("COVR_CONTROL__PUBLISH_HZ", "25")).unwrap();
+        loaded.set_by_command_line("log.level", Some("debug".into()), |c| &mut c.log.level);
+        loaded.set_by_command_line("server.database", None, |c| &mut c.server.database);
+        assert_eq!((loaded.config.control.publish_hz, loaded.config.log.level.as_str()), (25.0, "debug"));
+        let origins = &loaded.origins;
+        assert_eq!(origins.file(), Some(&*file));
+        assert_eq!(origins.of("control.rate_hz"), ConfigOrigin::File, "also where it says the default");
+        assert_eq!(origins.of("control.publish_hz"), ConfigOrigin::Environment);
+        assert_eq!(origins.of("log.level"), ConfigOrigin::CommandLine);
+        assert_eq!(origins.of("server.database"), ConfigOrigin::Default);
     }
 }

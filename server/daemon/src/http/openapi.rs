@@ -6,6 +6,7 @@ use axum::Router;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use covr_wire::dashboard::{Event, Snapshot};
+use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
 use covr_wire::scene::SceneDocument;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
@@ -30,6 +31,7 @@ pub struct Document(Arc<str>);
         (name = "scenes", description = "Scenes and their versions"),
         (name = "priors", description = "The game master's priors"),
         (name = "record", description = "Sessions and events"),
+        (name = "config", description = "The configuration in force"),
         (name = "health", description = "Probes and metrics")
     )
 )]
@@ -60,10 +62,15 @@ fn add_wire_schemas(document: &mut Value) {
     let mut generator = settings.into_generator();
     generator.subschema_for::<Snapshot>();
     generator.subschema_for::<SceneDocument>();
+    generator.subschema_for::<RecordedFrames>();
+    generator.subschema_for::<SessionDetail>();
+    generator.subschema_for::<ConfigInForce>();
+    let sessions = generator.subschema_for::<Vec<Session>>();
     let events = generator.subschema_for::<Vec<Event>>();
     let schemas = &mut document["components"]["schemas"];
     for (name, schema) in generator.take_definitions(true) {
         schemas[name] = schema;
     }
     schemas["EventList"] = events.to_value();
+    schemas["SessionList"] = sessions.to_value();
 }

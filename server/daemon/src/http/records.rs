@@ -1,4 +1,4 @@
-//! Priors and the record: changes, sessions, events.
+//! Priors and the record: changes and events.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use super::input::{Author, Limit, json as read_json};
 use super::problem::{Problem, ProblemItem};
 use crate::app::App;
 use crate::stage::PriorsRefused;
-use crate::store::{StoredPriorChange, StoredSession};
+use crate::store::StoredPriorChange;
 
 /// What became of priors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -37,11 +37,7 @@ struct EventFilter {
 
 /// The routes.
 pub fn routes() -> OpenApiRouter<Arc<App>> {
-    OpenApiRouter::new()
-        .routes(routes!(change_priors))
-        .routes(routes!(prior_changes))
-        .routes(routes!(sessions))
-        .routes(routes!(events))
+    OpenApiRouter::new().routes(routes!(change_priors)).routes(routes!(prior_changes)).routes(routes!(events))
 }
 
 /// Change priors of the active scene, all or none: `{"object id": 0.4}`.
@@ -91,16 +87,6 @@ async fn prior_changes(
     Query(limit): Query<Limit>,
 ) -> Result<Json<Vec<StoredPriorChange>>, Problem> {
     Ok(Json(app.store.prior_changes(limit.rows()?).await?))
-}
-
-/// Sessions, newest first.
-#[utoipa::path(get, path = "/sessions", tag = "record", params(Limit),
-    responses((status = 200, body = Vec<StoredSession>), (status = 422, body = Problem, description = "Bad limit")))]
-async fn sessions(
-    State(app): State<Arc<App>>,
-    Query(limit): Query<Limit>,
-) -> Result<Json<Vec<StoredSession>>, Problem> {
-    Ok(Json(app.store.sessions(limit.rows()?).await?))
 }
 
 /// Events, newest first.

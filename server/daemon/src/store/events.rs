@@ -2,6 +2,8 @@
 
 use covr_wire::dashboard::Event;
 
+use sqlx::SqliteConnection;
+
 use super::{Store, StoreError, unreadable};
 
 /// An event on its way into the store.
@@ -14,7 +16,7 @@ pub struct NewEvent {
 }
 
 impl Store {
-    /// Store events, all or none.
+    /// Store events, all or none, and count them to their sessions.
     pub async fn add_events(&self, events: &[NewEvent]) -> Result<(), StoreError> {
         let mut transaction = self.pool.begin().await?;
         for NewEvent { session_id, event } in events {
@@ -29,9 +31,36 @@ impl Store {
             .bind(event.detail.to_string())
             .execute(&mut *transaction)
             .await?;
+            if let Some(session) = session_id {
+                count(&mut transaction, *session, event).await?;
+            }
         }
         transaction.commit().await?;
         Ok(())
+    }
+
+    /// Events of a session that come after the one of this number, oldest first, with their numbers.
+    pub async fn session_events(
+        &self,
+        session: i64,
+        after: i64,
+        limit: u32,
+    ) -> Result<Vec<(i64, Event)>, StoreError> {
+        let rows: Vec<(i64, i64, String, String, String, String)> = sqlx::query_as(
+            "SELECT id, at_micros, at, kind, summary, detail FROM events \
+             WHERE session_id = ? AND id > ? ORDER BY id LIMIT ?",
+        )
+        .bind(session)
+        .bind(after)
+        .bind(limit)
+        .fetch_all(&self.pool)
+        .await?;
+        rows.into_iter()
+            .map(|(id, at_micros, at, kind, summary, detail)| {
+                let detail = serde_json::from_str(&detail).map_err(unreadable("event"))?;
+                Ok((id, Event { at_micros, at, kind, summary, detail }))
+            })
+            .collect()
     }
 
     /// The newest events, newest first, of one session or of all.
@@ -51,4 +80,42 @@ impl Store {
             })
             .collect()
     }
+}
+
+/// What an event changes of its session: how many reaches and stops it has, who is in it, which scene is in force.
+async fn count(connection: &mut SqliteConnection, session: i64, event: &Event) -> Result<(), StoreError> {
+    let detail = &event.detail;
+    let statement = match event.kind.as_str() {
+        "touch_began" if detail["served"] == true => {
+            "UPDATE sessions SET reaches = reaches + 1, reaches_served = reaches_served + 1 WHERE id = ?"
+        }
+        "touch_began" => "UPDATE sessions SET reaches = reaches + 1 WHERE id = ?",
+        "mode_changed" if detail["to"] == "protective_stop" || detail["to"] == "latched_stop" => {
+            "UPDATE sessions SET stops = stops + 1 WHERE id = ?"
+        }
+        "person_entered" => {
+            sqlx::query("INSERT OR IGNORE INTO session_persons (session_id, name) VALUES (?, ?)")
+                .bind(session)
+                .bind(detail["name"].as_str().unwrap_or("without a name"))
+                .execute(connection)
+                .await?;
+            return Ok(());
+        }
+        "scene_activated" => {
+            let (Some(scene), Some(version)) = (detail["scene"].as_i64(), detail["version"].as_i64()) else {
+                return Ok(());
+            };
+            sqlx::query("INSERT OR REPLACE INTO session_scenes (session_id, from_micros, scene_id, scene_version) VALUES (?, ?, ?, ?)")
+                .bind(session)
+                .bind(event.at_micros)
+                .bind(scene)
+                .bind(version)
+                .execute(connection)
+                .await?;
+            return Ok(());
+        }
+        _ => return Ok(()),
+    };
+    sqlx::query(statement).bind(session).execute(connection).await?;
+    Ok(())
 }

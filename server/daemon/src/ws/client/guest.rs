@@ -249,8 +249,14 @@ impl Guest {
             ));
         }
         let at = self.clock.server_time(touch.client_time_micros, received);
-        let detail =
+        let mut detail =
             json!({ "person": id.0, "name": touch.person, "object": touch.object, "at_micros": at.micros() });
+        if kind == "touch_began" {
+            let column = self.app.recording.past().at_touch(&touch.object, at);
+            detail["served"] = column.is_some_and(|column| column.served).into();
+            detail["column_off_m"] = column.map(|column| column.off_m).into();
+            detail["column_speed_mps"] = column.map(|column| column.speed_mps).into();
+        }
         self.record(kind, format!("{} {verb} {}", touch.person, touch.object), detail);
         Ok(())
     }
