@@ -56,6 +56,11 @@ impl Proposals {
         }
     }
 
+    /// The way leads around somebody.
+    pub fn goes_around(&self) -> bool {
+        self.side != 0.0
+    }
+
     /// The proposals, best first.
     pub fn velocities(&self) -> &[Planar] {
         &self.velocities

@@ -3,6 +3,7 @@
 use crate::frames::{Floor, Planar, Pose, Room};
 use crate::mode::{Mode, RequestKind};
 use crate::observation::PersonId;
+use crate::safety::separation::Terms;
 use crate::time::Time;
 
 /// Everything that a dashboard or a client may see of the engine at one moment.
@@ -92,10 +93,61 @@ pub struct ColumnState {
     pub serves: Option<PersonId>,
     /// The object it is committed to, as an index into `objects`.
     pub committed: Option<usize>,
+    /// What it is about.
+    pub activity: Activity,
+    /// What keeps it from moving as wanted, in `following`.
+    pub held_by: Option<HeldBy>,
+    /// It is led around somebody who stands in its way.
+    pub goes_around: bool,
     /// Motor currents x, y, A.
     pub current_amps: [f64; 2],
     /// Positions are in the room frame.
     pub homed: bool,
+}
+
+/// What the column is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Activity {
+    /// The drive is released.
+    Released,
+    /// It looks for the switches.
+    Homing,
+    /// Homed, holding, not armed.
+    Ready,
+    /// Armed, and there is nobody to serve, or nothing to serve them.
+    Waiting,
+    /// On its way to where it is wanted.
+    Approaching,
+    /// On its way, slower or another way because of a safety rule.
+    Yielding,
+    /// It may not go on: a safety rule holds it.
+    Blocked,
+    /// It stands where it is wanted.
+    InPlace,
+    /// Stopped, or braking for a stop.
+    Stopped,
+}
+
+/// What keeps the column from moving as wanted, with the distance on its brake path and the distance needed there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldBy {
+    /// Whom or what it would come too near.
+    pub holder: Holder,
+    /// The distance that there would be, m.
+    pub distance_m: f64,
+    /// The distance that a safety rule asks, m.
+    pub required_m: f64,
+}
+
+/// Whom or what the column would come too near.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Holder {
+    /// A person (R3).
+    Person(PersonId),
+    /// A keep-out shape, by its id in the scene (R13).
+    KeepOut(String),
+    /// The travel's end (R1).
+    Travel,
 }
 
 /// One person now, room frame.
@@ -115,8 +167,12 @@ pub struct PersonState {
     pub separation_radius_m: f64,
     /// Distance from the head axis to the footprint, m.
     pub distance_m: f64,
-    /// What the separation rule asks at the present speed, m: r and what the person may walk until the column rests.
+    /// What the separation rule asks at the present speed, term by term; none before the first pose.
+    pub separation: Option<Terms>,
+    /// What the separation rule asks at the present speed, m: the sum of the terms.
     pub required_m: f64,
+    /// The column is slower, elsewhere or at rest because of this person now.
+    pub limits_column: bool,
 }
 
 /// One object now.

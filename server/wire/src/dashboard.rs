@@ -4,6 +4,7 @@
 //! (a slow reader skips generations), every `event`, and an `answer` to each request. Nothing is ever patched.
 
 mod convert;
+mod reason;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

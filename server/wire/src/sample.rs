@@ -3,9 +3,10 @@
 use covr_engine::frames::{Floor, Planar, Point, Pose};
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::observation::PersonId;
+use covr_engine::safety::separation::Terms;
 use covr_engine::scene::Scene;
 use covr_engine::snapshot::{
-    ColumnState, ObjectState, PersonState, RuleId, RuleState, RuleStatus, Snapshot, StopCause,
+    Activity, ColumnState, ObjectState, PersonState, RuleId, RuleState, RuleStatus, Snapshot, StopCause,
 };
 use covr_engine::time::Time;
 use nalgebra::UnitQuaternion;
@@ -54,9 +55,17 @@ pub(crate) fn snapshot() -> Snapshot {
         pose_age_secs: 0.6,
         tracked: true,
         awaits_confirmation: false,
-        separation_radius_m: 0.45,
+        separation_radius_m: 0.35,
         distance_m: 1.2,
-        required_m: 0.9,
+        required_m: 1.0,
+        separation: pose.map(|_| Terms {
+            radius_m: 0.35,
+            reaction_m: 0.1,
+            braking_m: 0.15,
+            walking_m: 0.3,
+            age_m: 0.1,
+        }),
+        limits_column: pose.is_some(),
     };
     let object = |id: &str, probability, touch_secs| ObjectState {
         id: id.into(),
@@ -97,6 +106,9 @@ pub(crate) fn snapshot() -> Snapshot {
             target: Some(Floor::new(0.9, 3.0)),
             serves: Some(PersonId(3)),
             committed: Some(0),
+            activity: Activity::Stopped,
+            held_by: None,
+            goes_around: false,
             current_amps: [0.5, 0.4],
             homed: true,
         },

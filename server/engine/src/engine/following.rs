@@ -44,6 +44,10 @@ pub struct Following {
     proxy: Proxy,
     proposals: Proposals,
     conflict: Option<Conflict>,
+    /// The last conflict, and how long ago it was.
+    last_conflict: Option<(Conflict, Span)>,
+    /// The way of the last period led around somebody.
+    goes_around: bool,
     clearances_m: Vec<f64>,
     announced: Option<(PersonId, usize)>,
 }
@@ -59,6 +63,8 @@ impl Following {
             proxy: Proxy::at(Floor::new(0.0, 0.0)),
             proposals: Proposals::default(),
             conflict: None,
+            last_conflict: None,
+            goes_around: false,
             clearances_m: Vec::new(),
             announced: None,
         }
@@ -118,6 +124,21 @@ impl Following {
         since: Span,
         period: Span,
     ) {
+        self.pursue(governor, wish, measured, separation, since, period);
+        let ago = |(conflict, ago): (Conflict, Span)| (conflict, ago + period);
+        let before = self.last_conflict.map(ago).filter(|(_, ago)| *ago <= HELD_FOR);
+        self.last_conflict = self.conflict.map(|conflict| (conflict, Span::ZERO)).or(before);
+    }
+
+    fn pursue(
+        &mut self,
+        governor: &mut Governor,
+        wish: Option<Wish>,
+        measured: &State,
+        separation: &Separation<'_>,
+        since: Span,
+        period: Span,
+    ) {
         let here = governor.commanded().position();
         let inside = separation.travel.shrunk(separation.parameters.travel_margin_m);
         let target = inside.clamped(wish.map_or(here, |w| w.target));
@@ -127,6 +148,7 @@ impl Following {
             // Nothing is wanted, but somebody may be coming: the measured state is still looked at.
             let choice = governor.govern(&[Planar::ZERO], measured, separation, period);
             self.conflict = choice.conflict.filter(|_| choice.taken.is_none() && !settled);
+            self.goes_around = false;
             self.proxy = Proxy::at(governor.commanded().position());
             return;
         }
@@ -146,6 +168,7 @@ impl Following {
         let soft_start_mps = SOFT_START_MPS + SOFT_START_MPS2 * since.secs();
         let wanted = self.proxy.followed_from(here);
         self.proposals.fill(wanted, soft_start_mps, here, target, separation.threats, &inside);
+        self.goes_around = self.proposals.goes_around();
         let choice = governor.govern(self.proposals.velocities(), measured, separation, period);
         self.conflict = choice.conflict;
     }
@@ -154,6 +177,8 @@ impl Following {
     pub fn rest_at(&mut self, column: Floor) {
         self.proxy = Proxy::at(column);
         self.conflict = None;
+        self.last_conflict = None;
+        self.goes_around = false;
         self.announced = None;
     }
 
@@ -187,6 +212,17 @@ impl Following {
     /// What is in the way of the wanted motion.
     pub fn conflict(&self) -> Option<Conflict> {
         self.conflict
+    }
+
+    /// What holds the column: a conflict now or a moment ago. At the edge of what is allowed it comes and goes from
+    /// period to period.
+    pub fn held_by(&self) -> Option<Conflict> {
+        self.last_conflict.map(|(conflict, _)| conflict)
+    }
+
+    /// The way leads around somebody.
+    pub fn goes_around(&self) -> bool {
+        self.goes_around
     }
 
     pub fn wish(&self) -> Option<&Wish> {
@@ -230,12 +266,14 @@ const KEEP_OUT_RIM_M: f64 = 0.03;
 /// After arming and after a protective stop the speed begins here and grows: m/s, m/s2.
 const SOFT_START_MPS: f64 = 0.2;
 const SOFT_START_MPS2: f64 = 0.6;
+/// A conflict holds the column for so long after it was.
+const HELD_FOR: Span = Span::from_millis(200);
 /// Closer and slower than this there is nothing to correct: m, m/s.
 const SETTLED_M: f64 = 0.001;
 const SETTLED_MPS: f64 = 0.002;
 /// Success as the evaluation has it: m, m/s.
-const IN_PLACE_M: f64 = 0.1;
-const IN_PLACE_MPS: f64 = 0.05;
+pub(super) const IN_PLACE_M: f64 = 0.1;
+pub(super) const IN_PLACE_MPS: f64 = 0.05;
 /// An arm's length from the head to the surface, m.
 const WITHIN_REACH_M: f64 = 0.75;
 

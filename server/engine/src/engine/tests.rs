@@ -6,6 +6,7 @@ use crate::mode::RequestKind;
 use crate::observation::PoseSample;
 use crate::safety::vetted::Action;
 use crate::scene::{KeepOutShape, KeepOutSpec, ObjectSpec, SceneSpec, Shape};
+use crate::snapshot::{Activity, Holder};
 use nalgebra::UnitQuaternion;
 use proptest::prelude::*;
 
@@ -402,4 +403,38 @@ proptest! {
             );
         }
     }
+}
+
+#[test]
+fn the_column_says_what_it_is_about_and_who_holds_it() {
+    let mut room = Room::armed();
+    let about = |room: &Room| room.engine.snapshot(room.now).column.activity;
+    assert_eq!(about(&room), Activity::Waiting);
+    // From (2.2, 3.5) towards "left" at (3.5, 3.5): nobody between.
+    room.enter(2.2, 3.5, 0.0);
+    room.run(0.5);
+    let snapshot = room.engine.snapshot(room.now);
+    assert!(matches!(snapshot.column.activity, Activity::Approaching | Activity::Yielding));
+    room.run(15.0);
+    assert_eq!(about(&room), Activity::InPlace);
+
+    // Somebody at the very place: the column is held short of it.
+    let mut room = Room::armed();
+    room.enter(3.4, 3.3, 1.2);
+    room.run(15.0);
+    let snapshot = room.engine.snapshot(room.now);
+    assert_eq!(snapshot.column.activity, Activity::Blocked, "{:?}", snapshot.column);
+    let held = snapshot.column.held_by.unwrap();
+    assert_eq!(held.holder, Holder::Person(VISITOR));
+    assert!(held.distance_m <= held.required_m);
+    let person = &snapshot.persons[0];
+    assert!(person.limits_column);
+    let terms = person.separation.unwrap();
+    assert_eq!(terms.required_m(), person.required_m);
+    assert_eq!((terms.reaction_m, terms.braking_m, terms.walking_m), (0.0, 0.0, 0.0));
+    room.ask(RequestKind::Disarm);
+    room.run(0.5);
+    let snapshot = room.engine.snapshot(room.now);
+    assert_eq!((snapshot.column.activity, snapshot.column.held_by), (Activity::Released, None));
+    assert!(!snapshot.persons[0].limits_column);
 }

@@ -1,14 +1,15 @@
 //! The snapshot: what may be seen of the engine, made on demand.
 
 use super::Engine;
+use super::following::{IN_PLACE_M, IN_PLACE_MPS};
 use crate::frames::{Floor, Planar};
 use crate::machine::{Homing, Limits};
-use crate::mode::{self, RequestKind, Response};
+use crate::mode::{self, Mode, RequestKind, Response};
 use crate::motion::travel_secs;
 use crate::person::Person;
 use crate::safety::path::State;
-use crate::safety::separation::Separation;
-use crate::snapshot::{ColumnState, ObjectState, PersonState, Snapshot};
+use crate::safety::separation::{Conflict, Obstacle, Separation};
+use crate::snapshot::{Activity, ColumnState, HeldBy, Holder, ObjectState, PersonState, Snapshot};
 use crate::time::Time;
 
 impl Engine {
@@ -48,14 +49,52 @@ impl Engine {
             target: wish.map(|w| w.target),
             serves: wish.map(|w| w.visitor),
             committed: wish.and_then(|w| w.committed),
+            activity: self.activity(position, commanded.velocity().norm()),
+            held_by: self.following.held_by().map(|conflict| self.held_by(&conflict)),
+            goes_around: self.following.goes_around(),
             current_amps: self.report.map_or([0.0; 2], |r| r.current_amps),
             homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
         }
     }
 
+    fn activity(&self, position: Floor, commanded_mps: f64) -> Activity {
+        match self.mode {
+            Mode::Disarmed => return Activity::Released,
+            Mode::Homing => return Activity::Homing,
+            Mode::Ready => return Activity::Ready,
+            Mode::ProtectiveStop | Mode::LatchedStop | Mode::Faulted => return Activity::Stopped,
+            Mode::Following => {}
+        }
+        let Some(wish) = self.following.wish().filter(|_| !self.persons.iter().any(Person::is_unseen)) else {
+            return Activity::Waiting;
+        };
+        let held = self.following.held_by().is_some();
+        let moves = commanded_mps >= IN_PLACE_MPS;
+        match (held, moves) {
+            (true, false) => Activity::Blocked,
+            (true, true) => Activity::Yielding,
+            (false, _) if self.following.goes_around() => Activity::Yielding,
+            (false, false) if position.distance_m(wish.target) < IN_PLACE_M => Activity::InPlace,
+            (false, _) => Activity::Approaching,
+        }
+    }
+
+    fn held_by(&self, conflict: &Conflict) -> HeldBy {
+        let holder = match conflict.with {
+            Obstacle::Person(person) => Holder::Person(person),
+            Obstacle::KeepOut(index) => {
+                let keep_outs = &self.scene.spec().keep_outs;
+                Holder::KeepOut(keep_outs.get(index).map_or_else(String::new, |k| k.id.clone()))
+            }
+            Obstacle::Travel => Holder::Travel,
+        };
+        HeldBy { holder, distance_m: conflict.distance_m, required_m: conflict.required_m }
+    }
+
     fn person_state(&self, person: &Person, now: Time) -> PersonState {
-        let column = self.column();
-        let state = State::moving(column.position, column.velocity);
+        let position = self.report.map_or(Floor::new(0.0, 0.0), |r| r.position);
+        let velocity = self.report.map_or(Planar::ZERO, |r| r.velocity);
+        let state = State::moving(position, velocity);
         let separation = Separation {
             scene: &self.scene,
             limits: &self.config.limits,
@@ -64,22 +103,21 @@ impl Engine {
             parameters: &self.parameters,
         };
         // The measured velocity of a resting machine is noise; the zone shown is that of a meant motion.
-        let state = if state.velocity().norm() < super::AT_REST_MPS {
-            State::at_rest(column.position)
-        } else {
-            state
-        };
+        let state =
+            if state.velocity().norm() < super::AT_REST_MPS { State::at_rest(position) } else { state };
         let threat = person.threat(now);
+        let terms = threat.map(|t| separation.terms(&state, &t));
         PersonState {
             person: person.id(),
             pose: person.newest().map(|s| s.pose),
             pose_age_secs: person.pose_age(now).map_or(0.0, |age| age.secs()),
             tracked: person.lost(now, &self.parameters).is_none(),
             awaits_confirmation: person.awaits_confirmation(),
-            separation_radius_m: threat
-                .map_or(self.parameters.radius_m, |t| separation.radius_m(&t, state.velocity().norm())),
-            distance_m: threat.map_or(0.0, |t| self.scene.footprint().distance_m(column.position, t.head)),
-            required_m: threat.map_or(self.parameters.radius_m, |t| separation.required_m(&state, &t)),
+            separation_radius_m: terms.map_or(self.parameters.radius_m, |terms| terms.radius_m),
+            distance_m: threat.map_or(0.0, |t| self.scene.footprint().distance_m(position, t.head)),
+            required_m: terms.map_or(self.parameters.radius_m, |terms| terms.required_m()),
+            separation: terms,
+            limits_column: self.following.held_by().is_some_and(|c| c.with == Obstacle::Person(person.id())),
         }
     }
 
@@ -113,11 +151,11 @@ impl Engine {
 
 /// From now until the column could stand there; at once where it stands already.
 fn arrival_secs(from: Floor, place: Floor, limits: &Limits) -> f64 {
-    if from.distance_m(place) < IN_PLACE_M { 0.0 } else { travel_secs(from, place, limits) }
+    if from.distance_m(place) < THERE_M { 0.0 } else { travel_secs(from, place, limits) }
 }
 
 /// Nearer than this the column is there: the following error of a healthy machine, m.
-const IN_PLACE_M: f64 = 0.01;
+const THERE_M: f64 = 0.01;
 /// The head is this far from a surface when the hand is at it (recorded people: 0.6 m to the object's centre), m.
 const ARM_M: f64 = 0.5;
 /// Somebody who stands may walk off at once: the 95th percentile of recorded people's speed, m/s.

@@ -12,12 +12,15 @@
 //! after the column breaks the retreat's own condition for as long as the pose takes to arrive.
 //! It must never know who is served or why: it sees heads, shapes and a path.
 
+mod terms;
+
 use crate::frames::{Floor, Planar};
 use crate::machine::{Limits, Travel};
 use crate::observation::PersonId;
 use crate::safety::parameters::Parameters;
 use crate::safety::path::{BrakePath, State};
 use crate::scene::Scene;
+pub use terms::{Term, Terms};
 
 /// A person as this rule sees them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,14 +97,6 @@ impl Separation<'_> {
             return Ok(());
         }
         self.certify_path(state, &BrakePath::now(state, self.limits), speed, 0.0)
-    }
-
-    /// What the rule asks of the distance to one person at this speed, m.
-    pub fn required_m(&self, state: &State, threat: &Threat) -> f64 {
-        let path = BrakePath::worst(state, self.limits, self.parameters.reaction.secs());
-        let walking_secs = if state.velocity().norm() < AT_REST_MPS { 0.0 } else { path.duration_secs() };
-        self.radius_m(threat, state.velocity().norm())
-            + self.parameters.v_h_mps * (threat.age_secs + walking_secs)
     }
 
     /// r for this head at this speed of the column, m.

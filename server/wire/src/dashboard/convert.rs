@@ -7,13 +7,15 @@ use covr_engine::frames::{Floor, Planar, Point, Room};
 use covr_engine::machine::{Limits, Travel};
 use covr_engine::mode::{Mode as EngineMode, RequestKind};
 use covr_engine::observation::PersonId;
+use covr_engine::safety::separation::{Term, Terms};
 use covr_engine::snapshot::{self as engine, RuleId};
 use covr_engine::{Answer, Outcome as EngineOutcome, Request};
 use serde_json::json;
 
 use super::{
     Activity, Client, Column, ControlLoop, Event, MachineRequest, MachineShape, Mode, Object, Outcome,
-    Person, RequestState, RuleState, RuleStatus, Snapshot, StopCause, ToDashboard,
+    Person, RequestState, RuleState, RuleStatus, SeparationTerm, SeparationTerms, Snapshot, StopCause,
+    ToDashboard, reason,
 };
 
 /// What a snapshot holds that the engine does not know.
@@ -76,7 +78,7 @@ impl Snapshot {
                 })
                 .collect(),
             rules: state.rules.iter().map(Into::into).collect(),
-            column: column(state),
+            column: column(state, around.names),
             persons: state.persons.iter().map(|person| self::person(person, around.names)).collect(),
             objects: state.objects.iter().map(Into::into).collect(),
             intention_rule: state.intention_rule.into(),
@@ -253,7 +255,7 @@ pub const fn request_name(kind: RequestKind) -> &'static str {
     }
 }
 
-fn column(state: &engine::Snapshot) -> Column {
+fn column(state: &engine::Snapshot, names: &BTreeMap<PersonId, String>) -> Column {
     let column = &state.column;
     Column {
         position_m: floor(column.position),
@@ -263,22 +265,45 @@ fn column(state: &engine::Snapshot) -> Column {
         target_m: column.target.map(floor),
         serves: column.serves.map(|person| person.0),
         committed: column.committed.and_then(|i| state.objects.get(i)).map(|object| object.id.clone()),
-        activity: activity(state),
-        reason: String::new(),
+        activity: column.activity.into(),
+        reason: reason::of(state, names),
         planned_path_m: Vec::new(),
         current_amps: column.current_amps,
         homed: column.homed,
     }
 }
 
-const fn activity(state: &engine::Snapshot) -> Activity {
-    match state.mode {
-        EngineMode::Disarmed => Activity::Released,
-        EngineMode::Homing => Activity::Homing,
-        EngineMode::Ready => Activity::Ready,
-        EngineMode::Following if state.column.serves.is_some() => Activity::Approaching,
-        EngineMode::Following => Activity::Waiting,
-        EngineMode::ProtectiveStop | EngineMode::LatchedStop | EngineMode::Faulted => Activity::Stopped,
+impl From<engine::Activity> for Activity {
+    fn from(activity: engine::Activity) -> Self {
+        match activity {
+            engine::Activity::Released => Self::Released,
+            engine::Activity::Homing => Self::Homing,
+            engine::Activity::Ready => Self::Ready,
+            engine::Activity::Waiting => Self::Waiting,
+            engine::Activity::Approaching => Self::Approaching,
+            engine::Activity::Yielding => Self::Yielding,
+            engine::Activity::Blocked => Self::Blocked,
+            engine::Activity::InPlace => Self::InPlace,
+            engine::Activity::Stopped => Self::Stopped,
+        }
+    }
+}
+
+impl From<Terms> for SeparationTerms {
+    fn from(terms: Terms) -> Self {
+        Self {
+            radius_m: terms.radius_m,
+            reaction_m: terms.reaction_m,
+            braking_m: terms.braking_m,
+            walking_m: terms.walking_m,
+            age_m: terms.age_m,
+            binding: match terms.binding() {
+                Term::Reaction => SeparationTerm::Reaction,
+                Term::Braking => SeparationTerm::Braking,
+                Term::Walking => SeparationTerm::Walking,
+                Term::Age => SeparationTerm::Age,
+            },
+        }
     }
 }
 
@@ -296,12 +321,12 @@ fn person(person: &engine::PersonState, names: &BTreeMap<PersonId, String>) -> P
         separation_radius_m: person.separation_radius_m,
         distance_m: person.distance_m,
         required_m: person.required_m,
-        separation: None,
-        limits_column: false,
+        separation: person.separation.map(Into::into),
+        limits_column: person.limits_column,
     }
 }
 
-fn name_of(person: PersonId, names: &BTreeMap<PersonId, String>) -> String {
+pub(super) fn name_of(person: PersonId, names: &BTreeMap<PersonId, String>) -> String {
     names.get(&person).cloned().unwrap_or_else(|| format!("person {}", person.0))
 }
 
@@ -353,6 +378,10 @@ mod tests {
         assert!((snapshot.persons[0].yaw_rad - 0.5).abs() < 1e-12);
         assert!((snapshot.persons[0].pitch_rad - 0.25).abs() < 1e-12);
         assert_eq!(snapshot.persons[1].head_m, None);
+        let separation = snapshot.persons[0].separation.unwrap();
+        assert_eq!(separation.binding, SeparationTerm::Walking);
+        assert_eq!((snapshot.persons[0].limits_column, snapshot.persons[1].limits_column), (true, false));
+        assert_eq!(snapshot.persons[1].separation, None);
         assert_eq!(snapshot.rules[0].title, "travel");
         assert_eq!(snapshot.requests[0].request, "reset");
         let json = serde_json::to_value(ToDashboard::Snapshot(Box::new(snapshot))).unwrap();
