@@ -1,39 +1,65 @@
 /** The live top view: the picture, what the column is about, its numbers, and the legend of what is drawn. */
-import { createMemo, For, Show, type JSX } from "solid-js";
-import { words } from "../i18n";
+import { createEffect, createMemo, createSignal, For, onCleanup, onMount, Show, untrack, type Accessor, type JSX } from "solid-js";
+import { language, words } from "../i18n";
 import { labelOf } from "../lib/labels";
 import { metres, span } from "../lib/format";
-import { TrailKeeper } from "../lib/trails";
+import type { Layout } from "../lib/layout";
+import { TrailKeeper, type Trails } from "../lib/trails";
 import type { Live } from "../live/live";
 import { Arena, type ArenaPicture, type Ghost, type Layers } from "./Arena";
-import { ALL_LAYERS } from "./drawing/picture";
+
+/** The picture of the newest snapshot, with the trails that led to it. */
+export function livePicture(live: Live, ghost: Accessor<Ghost | null>): Accessor<ArenaPicture> {
+  const keeper = new TrailKeeper();
+  const trails = createMemo((): Trails => {
+    const snapshot = live.newest();
+    if (snapshot !== null) keeper.take(snapshot, snapshot.at_micros);
+    return keeper.trails();
+  });
+  return createMemo(() => ({
+    state: live.newest(),
+    scene: live.scene()?.scene ?? null,
+    shape: live.server()?.shape ?? null,
+    trails: trails(),
+    ghost: ghost(),
+  }));
+}
 
 /** Picture, activity, numbers and legend. */
-export function TopView(props: { readonly live: Live; readonly ghost?: Ghost | null; readonly layers?: Layers }): JSX.Element {
-  const keeper = new TrailKeeper();
-  const layers = (): Layers => props.layers ?? ALL_LAYERS;
-  const picture = createMemo((): ArenaPicture => {
-    const snapshot = props.live.newest();
-    if (snapshot !== null) keeper.take(snapshot, snapshot.at_micros);
-    return {
-      state: snapshot,
-      scene: props.live.scene()?.scene ?? null,
-      shape: props.live.server()?.shape ?? null,
-      trails: keeper.trails(),
-      ghost: props.ghost ?? null,
-    };
-  });
+export function TopView(props: { readonly live: Live; readonly picture: Accessor<ArenaPicture>; readonly layout: Layout }): JSX.Element {
+  const layers = createMemo(
+    (): Layers => {
+      const shown = (layer: keyof Layers): boolean => props.layout.flag(`layer_${layer}`, true);
+      return { trails: shown("trails"), zones: shown("zones"), path: shown("path"), labels: shown("labels") };
+    },
+  );
   const stale = createMemo(() => {
     const freshness = props.live.freshness();
     return freshness.kind === "stale" ? freshness : null;
   });
   const numbers = (): ReturnType<typeof columnNumbers> => columnNumbers(props.live);
+  const side = (): boolean => props.layout.flag("side_view", false);
+  // On a low screen the side view takes the legend's place, unless somebody wants both.
+  const legend = (): boolean => props.layout.flag("legend", !(side() && window.innerHeight < LOW_PX));
+  const ghosted = createMemo(() => (props.picture().ghost ?? null) !== null);
 
   return (
-    <section class="panel top-view" aria-label={words().live.topView}>
-      <ActivityLine live={props.live} />
+    <section class="panel desk-picture" aria-label={words().live.topView}>
+      <div class="picture-head">
+        <ActivityLine live={props.live} />
+        <dl class="column-numbers fades">
+          <For each={["position", "speed", "target", "current"] as const}>
+            {(name) => (
+              <div>
+                <dt>{words().live[name]}</dt>
+                <dd data-testid={`column-${name}`}>{numbers()[name]}</dd>
+              </div>
+            )}
+          </For>
+        </dl>
+      </div>
       <div class="canvas-frame">
-        <Arena picture={picture} layers={layers} label={() => describe(props.live)} testId="top-view">
+        <Arena picture={props.picture} layers={layers} label={() => describe(props.live)} describedBy="top-view-summary" testId="top-view">
           <Show when={stale()}>
             {(freshness) => (
               <div class="stale-stamp" aria-hidden="true">
@@ -44,19 +70,80 @@ export function TopView(props: { readonly live: Live; readonly ghost?: Ghost | n
           </Show>
         </Arena>
       </div>
-      <dl class="column-numbers fades">
-        <For each={["position", "speed", "target", "current"] as const}>
-          {(name) => (
-            <div>
-              <dt>{words().live[name]}</dt>
-              <dd data-testid={`column-${name}`}>{numbers()[name]}</dd>
-            </div>
+      <Summary live={props.live} />
+      <div class="desk-bar" role="group" aria-label={words().live.layers}>
+        <For each={LAYERS}>
+          {(layer) => (
+            <Toggle name={`layer-${layer}`} on={layers()[layer]} word={words().live.layer[layer]} set={(on) => { props.layout.keep(`layer_${layer}`, on); }} />
           )}
         </For>
-      </dl>
-      <Legend layers={layers()} ghost={props.ghost !== undefined && props.ghost !== null} />
+        <Toggle name="side-view" on={side()} word={words().live.sideView} set={(on) => { props.layout.keep("side_view", on); }} />
+        <Toggle name="legend" on={legend()} word={words().live.legend} set={(on) => { props.layout.keep("legend", on); }} />
+        <button type="button" class="toggle" data-testid="layout-reset" onClick={() => { props.layout.reset(); }}>
+          {words().live.resetLayout}
+        </button>
+      </div>
+      <Show when={legend()}>
+        <Legend layers={layers()} ghost={ghosted()} />
+      </Show>
     </section>
   );
+}
+
+function Toggle(props: { readonly name: string; readonly word: string; readonly on: boolean; readonly set: (on: boolean) => void }): JSX.Element {
+  return (
+    <button type="button" class="toggle" aria-pressed={props.on} data-testid={`toggle-${props.name}`} onClick={() => { props.set(!props.on); }}>
+      {props.word}
+    </button>
+  );
+}
+
+/**
+ * Where everybody is, in words, for those who do not see the picture. It changes every few seconds, and is read out only
+ * to whoever has the focus in the picture.
+ */
+function Summary(props: { readonly live: Live }): JSX.Element {
+  const [heard, setHeard] = createSignal(false);
+  const [text, setText] = createSignal("");
+  const tell = (): void => {
+    setText(untrack(() => summaryOf(props.live)));
+  };
+  const focusMoved = (): void => {
+    const focused = document.activeElement?.getAttribute("aria-describedby") === SUMMARY_ID;
+    if (focused && !heard()) tell();
+    setHeard(focused);
+  };
+  onMount(() => {
+    tell();
+    const timer = setInterval(tell, SUMMARY_EVERY_MILLIS);
+    document.addEventListener("focusin", focusMoved);
+    onCleanup(() => {
+      clearInterval(timer);
+      document.removeEventListener("focusin", focusMoved);
+    });
+  });
+  createEffect(() => {
+    language();
+    tell();
+  });
+  return (
+    <p class="unseen" id={SUMMARY_ID} data-testid="top-view-summary" aria-live={heard() ? "polite" : "off"}>
+      {text()}
+    </p>
+  );
+}
+
+function summaryOf(live: Live): string {
+  const snapshot = live.newest();
+  if (snapshot === null) return words().live.nothingKnown;
+  const { column, persons } = snapshot;
+  const at = ([x, y]: readonly [number, number, ...number[]]): [string, string] => [x.toFixed(1), y.toFixed(1)];
+  return [
+    column.homed ? words().live.columnAt(...at(column.position_m)) : words().live.columnNowhere,
+    ...persons.map((person) =>
+      person.head_m === null ? words().live.personNowhere(person.name) : words().live.personAt(person.name, ...at(person.head_m), person.distance_m.toFixed(1)),
+    ),
+  ].join(" ");
 }
 
 /** What the column serves and why, large enough to read at a glance. */
@@ -133,3 +220,8 @@ function describe(live: Live): string {
   const snapshot = live.snapshot();
   return snapshot === null ? words().live.nothingKnown : words().live.seen(snapshot.persons.length, snapshot.objects.length);
 }
+
+const LAYERS = ["trails", "zones", "path", "labels"] as const;
+const SUMMARY_ID = "top-view-summary";
+const LOW_PX = 860;
+const SUMMARY_EVERY_MILLIS = 4000;

@@ -3,9 +3,9 @@
  * does not say is not drawn.
  */
 import { drawColumn, drawGhost, drawPlannedPath } from "./column";
-import type { Brush } from "./brush";
+import { FONT_SMALL, write, type Brush } from "./brush";
 import { drawLabels, drawObjects } from "./objects";
-import { drawBindingTerm, drawLimit, drawPerson, drawZone } from "./persons";
+import { bindingNote, drawLimit, drawPerson, drawZone } from "./persons";
 import { boundsOf, type ArenaPicture, type Layers } from "./picture";
 import { drawScenery } from "./scenery";
 import { drawTrails } from "./trails";
@@ -35,8 +35,9 @@ export class ArenaPainter {
       if (layers.zones && state !== null) drawLimit(brush, person, state.column);
       drawPerson(brush, person, state?.column.serves === person.id);
     }
-    if (layers.labels && scene !== null) drawLabels(brush, scene, state);
-    if (layers.zones && layers.labels) for (const person of state?.persons ?? []) drawBindingTerm(brush, person);
+    const notes = layers.zones ? (state?.persons ?? []).flatMap((person) => bindingNote(brush, person) ?? []) : [];
+    if (layers.labels && scene !== null) drawLabels(brush, scene, state, notes);
+    for (const { words, at, colour } of notes) write(brush, words, at, colour, FONT_SMALL);
   }
 
   #paintScenery(brush: Brush, { scene, shape }: ArenaPicture): void {

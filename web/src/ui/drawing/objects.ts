@@ -4,7 +4,7 @@ import type { Point } from "../../lib/plan";
 import { LINE_PX, placeLabels, type Box, type Label } from "../../lib/placement";
 import { words } from "../../i18n";
 import { disc, FONT_LABEL, FONT_SMALL, line, pixelsAround, tracePath, widthOf, write, type Brush } from "./brush";
-import { HEAD_M } from "./persons";
+import { HEAD_M, type Note } from "./persons";
 import { footprintKept, nameOf, type ArenaState, type DrawnObject } from "./picture";
 
 /** Footprints with their weights, and what is predicted. */
@@ -36,7 +36,7 @@ export function drawObjects(brush: Brush, scene: SceneDocument, state: ArenaStat
 }
 
 /** Names and weights, over everything, and none over another: the predicted first, then in the scene's order, which stays. */
-export function drawLabels(brush: Brush, scene: SceneDocument, state: ArenaState | null): void {
+export function drawLabels(brush: Brush, scene: SceneDocument, state: ArenaState | null, notes: readonly Note[]): void {
   const { palette, plan, widthPx, heightPx } = brush;
   const states = statesOf(state);
   const committed = state?.column.committed ?? null;
@@ -47,6 +47,10 @@ export function drawLabels(brush: Brush, scene: SceneDocument, state: ArenaState
     const head = HEAD_M * plan.pxPerMetre;
     const half = Math.max(widthOf(brush, person.name, FONT_LABEL, palette.person) / 2, head);
     taken.push({ left: px - half, top: py - head, right: px + half, bottom: py + head + 18 });
+  }
+  for (const { words: note, at, colour } of notes) {
+    const half = widthOf(brush, note, FONT_SMALL, colour) / 2;
+    taken.push({ left: at[0] - half, top: at[1] - LINE_PX / 2, right: at[0] + half, bottom: at[1] + LINE_PX / 2 });
   }
   const labels: Label[] = [];
   for (const [index, document] of scene.objects.entries()) {

@@ -44,16 +44,23 @@ export function drawZone(brush: Brush, person: DrawnPerson): void {
   context.globalAlpha = 1;
 }
 
+/** Words about a person, and where they stand. */
+export interface Note {
+  readonly words: string;
+  readonly at: Point;
+  readonly colour: string;
+}
+
 /** Names the term that binds, over the zone's upper edge. */
-export function drawBindingTerm(brush: Brush, person: DrawnPerson): void {
+export function bindingNote(brush: Brush, person: DrawnPerson): Note | null {
   const terms = person.separation ?? null;
-  if (person.head_m === null || terms === null || brush.plan.pxPerMetre < LEAST_PX_FOR_TERMS) return;
+  if (person.head_m === null || terms === null || brush.plan.pxPerMetre < LEAST_PX_FOR_TERMS) return null;
   const [px, py] = brush.plan.toPx([person.head_m[0], person.head_m[1]]);
   const top = py - person.required_m * brush.plan.pxPerMetre - 10;
   // A zone that reaches beyond the picture is named at its lower edge, else inside the picture.
   const y = top < 10 ? Math.min(py + person.required_m * brush.plan.pxPerMetre + 10, brush.heightPx - 10) : top;
   const term = terms.binding;
-  write(brush, `${words().live.terms[term]} ${metres(bindingMetres(terms))} m`, [px, y], brush.palette.terms[term], FONT_SMALL);
+  return { words: `${words().live.terms[term]} ${metres(bindingMetres(terms))} m`, at: [px, y], colour: brush.palette.terms[term] };
 }
 
 /** A tie from who limits the column to it. */
@@ -69,6 +76,8 @@ export function drawLimit(brush: Brush, person: DrawnPerson, column: ArenaState[
   line(context, from, to, colour);
   context.lineCap = "butt";
   context.setLineDash([]);
+  // The head's and the column's own marks fill a shorter tie.
+  if (Math.hypot(to[0] - from[0], to[1] - from[1]) < LEAST_TIE_PX) return;
   const middle: Point = [(from[0] + to[0]) / 2, (from[1] + to[1]) / 2];
   write(brush, `${words().live.limits} ${metres(person.distance_m)} m`, middle, colour, FONT_SMALL);
 }
@@ -118,3 +127,4 @@ const VIEW_M = 1.1;
 const VIEW_HALF_RAD = (20 * Math.PI) / 180;
 /** In a smaller picture the zone's words would cover it. */
 const LEAST_PX_FOR_TERMS = 60;
+const LEAST_TIE_PX = 90;
