@@ -8,7 +8,7 @@ function layoutOf(layout: Preferences["layout"]): { layout: Layout; now: () => P
   const store: PreferenceStore = {
     preferences: () => preferences,
     change: (change) => {
-      preferences = { ...preferences, ...change };
+      preferences = change.layout === undefined ? preferences : { ...preferences, layout: change.layout };
     },
     switchTo: () => undefined,
   };
