@@ -50,3 +50,19 @@ async fn the_dashboards_page_is_served_with_a_policy() {
     }
     assert_eq!(server.call("GET", "/assets/none.js", None).await.status(), 404);
 }
+
+#[tokio::test]
+async fn a_page_that_the_configuration_names_may_be_a_vr_client_and_nothing_else() {
+    let server = TestServer::start_with(|config| config.clients.allowed_origins = vec!["null".into()]).await;
+    let upgrade = |path: &str, origin: &str| {
+        let request = Client::new().get(format!("http://{}{path}", server.host)).header("Origin", origin);
+        let request = request.header("Connection", "upgrade").header("Upgrade", "websocket");
+        let request = request.header("Sec-WebSocket-Version", "13");
+        request.header("Sec-WebSocket-Key", "dGhlIHNhbXBsZSBub25jZQ==").send()
+    };
+    assert_eq!(upgrade("/ws/v1/client", "null").await.unwrap().status(), 101);
+    assert_eq!(upgrade("/ws/v1/client", "http://elsewhere.example").await.unwrap().status(), 403);
+    assert_eq!(upgrade("/ws/v1/dashboard", "null").await.unwrap().status(), 403);
+    let home = Client::new().post(format!("http://{}/api/v1/home", server.host)).header("Origin", "null");
+    problem(403, "/api/v1/home", home.send().await.unwrap()).await;
+}

@@ -4,6 +4,7 @@
 
 mod clients;
 mod config;
+mod contract;
 mod dashboards;
 mod guards;
 mod machine;

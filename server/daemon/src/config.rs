@@ -126,6 +126,8 @@ pub struct Clients {
     pub tracking_origin_m: [f64; 3],
     /// How the tracking space is turned against the room, counter-clockwise about +z, rad.
     pub tracking_yaw_rad: f64,
+    /// Origins of other sites' pages that may connect as VR clients.
+    pub allowed_origins: Vec<String>,
 }
 
 /// Dashboards.
@@ -188,6 +190,7 @@ impl Default for Config {
                 silence_timeout_secs: 10.0,
                 tracking_origin_m: [0.0; 3],
                 tracking_yaw_rad: 0.0,
+                allowed_origins: Vec::new(),
             },
             dashboards: Dashboards { most: 32, event_queue: 1_024 },
             log: Log { format: LogFormat::Text, level: "info".into() },

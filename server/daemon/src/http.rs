@@ -1,5 +1,6 @@
 //! HTTP: handlers check, convert and pass on. Every error under /api is a problem document.
 
+mod asyncapi;
 mod config;
 mod guard;
 mod health;
@@ -60,7 +61,9 @@ pub fn router(app: Arc<App>) -> Router {
         .layer(CatchPanicLayer::new())
         .layer(TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, time_out))
         .layer(DefaultBodyLimit::max(MAX_SCENE_BYTES));
-    api.route("/api/v1/openapi.json", get(move || std::future::ready(document.clone().into_response())))
+    let sockets = asyncapi::document(&app.config);
+    api.route("/api/v1/asyncapi.json", get(move || std::future::ready(sockets.clone().into_response())))
+        .route("/api/v1/openapi.json", get(move || std::future::ready(document.clone().into_response())))
         .route("/api/{*rest}", get(nothing_here).fallback(nothing_here))
         .route("/ws/v1/client", get(ws::client::upgrade))
         .route("/ws/v1/dashboard", get(ws::dashboard::upgrade))

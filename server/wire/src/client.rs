@@ -15,13 +15,14 @@ mod outgoing;
 mod pace;
 mod to_client;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
 pub use decode::{DecodeFailed, decode, decode_from_server};
 pub use error::{ClientError, ErrorCode};
 pub use outgoing::POSE_RATE_HZ;
-pub use pace::{AbuseGauge, OutOfOrder, Sequencer, Verdict};
+pub use pace::{AbuseGauge, MOST_POSES_PER_SEC, OTHER_MESSAGES_PER_SEC, OutOfOrder, Sequencer, Verdict};
 pub use to_client::{
     ActiveScene, ClientLimits, ClockPong, ColumnNow, ObjectPlace, Prediction, PropAt, StopState, ToClient,
     Welcome,
@@ -55,7 +56,7 @@ pub enum Frame {
 }
 
 /// What a client says.
-#[derive(Debug, Clone, PartialEq, Serialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema, TS)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum FromClient {
     /// First message of a connection.
@@ -79,10 +80,11 @@ pub enum FromClient {
 }
 
 /// Who the client is, and how it counts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct ClientHello {
     /// For people; 1 to 64 characters.
+    #[schemars(length(min = 1, max = 64))]
     pub name: String,
     /// Axes and units of everything it sends and wants to be sent.
     pub convention: Convention,
@@ -97,12 +99,12 @@ pub struct ClientHello {
 }
 
 /// A word that lets a client in. Never printed.
-#[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Token(String);
 
 /// Which way a client's axes go, and its unit of length.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(rename_all = "snake_case")]
 pub enum Convention {
     /// OpenXR and WebXR: right-handed, +x right, +y up, -z forward, metres.
@@ -120,15 +122,16 @@ pub enum Convention {
 }
 
 /// A person by the client's own name for them.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct PersonName {
     /// 1 to 64 characters; unique on the connection.
+    #[schemars(length(min = 1, max = 64))]
     pub person: String,
 }
 
 /// Where a headset is, in the client's convention and units.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct HeadPose {
     /// Whose.
@@ -151,7 +154,7 @@ pub struct HeadPose {
 }
 
 /// Where the hands are, in the client's convention and units.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct Hands {
     /// The left one.
@@ -163,7 +166,7 @@ pub struct Hands {
 }
 
 /// A touch of a virtual object, as the client sees it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct Touch {
     /// Who.
@@ -175,10 +178,11 @@ pub struct Touch {
 }
 
 /// Something of the client's own, for the record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct SceneEvent {
     /// 1 to 64 characters.
+    #[schemars(length(min = 1, max = 64))]
     pub name: String,
     /// Any JSON, at most 4096 bytes of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -188,7 +192,7 @@ pub struct SceneEvent {
 
 /// One half of a clock exchange. The server answers with a pong; the next ping says when that pong came, which
 /// gives the server all four times of the exchange before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct ClockPing {
     /// The client's number of this ping.
@@ -201,7 +205,7 @@ pub struct ClockPing {
 }
 
 /// When a pong was received.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct PongReceived {
     /// Of the ping that it answered.

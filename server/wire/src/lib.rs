@@ -5,7 +5,7 @@ pub mod clock;
 mod complaint;
 pub mod convention;
 pub mod dashboard;
+pub mod examples;
 pub mod records;
-#[cfg(test)]
 mod sample;
 pub mod scene;

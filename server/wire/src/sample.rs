@@ -1,4 +1,4 @@
-//! A small state for the tests of this crate.
+//! A small state: for the examples of the published contract, and for the tests of this crate.
 
 use covr_engine::frames::{Floor, Planar, Point, Pose};
 use covr_engine::mode::{Mode, RequestKind};
@@ -28,11 +28,12 @@ pub(crate) const SCENE: &str = r#"{
 }"#;
 
 pub(crate) fn document() -> SceneDocument {
-    parse_scene(SCENE.as_bytes()).expect("a good scene").0
+    // A constant; the tests of `examples` read it.
+    parse_scene(SCENE.as_bytes()).expect("the sample is a good scene").0
 }
 
 pub(crate) fn scene() -> Scene {
-    build_scene(&document()).expect("a good scene")
+    build_scene(&document()).expect("the sample is a good scene")
 }
 
 pub(crate) fn control_loop() -> ControlLoop {

@@ -32,6 +32,7 @@ enum Place {
     Text(fn(&mut Config) -> &mut String),
     Path(fn(&mut Config) -> &mut PathBuf),
     Address(fn(&mut Config) -> &mut SocketAddr),
+    Origins(fn(&mut Config) -> &mut Vec<String>),
     Rectangle(fn(&mut Config) -> &mut [f64; 4]),
     Point(fn(&mut Config) -> &mut [f64; 3]),
     Rule(fn(&mut Config) -> &mut RuleName),
@@ -191,6 +192,13 @@ pub fn all() -> Vec<Key> {
             Place::Number(-3.2..=3.2, |c| &mut c.clients.tracking_yaw_rad),
         ),
         Key::new(
+            "clients.allowed_origins",
+            "Pages of other sites that may connect as VR clients, by their Origin: \"http://localhost:5173\" for a page under development. \
+             A page opened from a file has \"file://\" or \"null\", by browser; so has any site's sandboxed frame \"null\". The \
+             server's own pages and programs always may.",
+            Place::Origins(|c| &mut c.clients.allowed_origins),
+        ),
+        Key::new(
             "dashboards.most",
             "Dashboards at once.",
             Place::Whole(1..=1_000, |c| &mut c.dashboards.most),
@@ -223,6 +231,9 @@ impl Key {
             Place::Text(_) => "a text that is not empty".into(),
             Place::Path(_) => "a path that is not empty".into(),
             Place::Address(_) => "an address and a port such as \"127.0.0.1:7878\"".into(),
+            Place::Origins(_) => {
+                "a list of texts such as \"https://lab.example:8443\", \"file://\" or \"null\"".into()
+            }
             Place::Rectangle(_) => {
                 "four numbers [min_x, min_y, max_x, max_y], each side at least 0.5 m".into()
             }
@@ -253,6 +264,9 @@ impl Key {
             Place::Text(place) => Value::String(place(&mut config).clone()),
             Place::Path(place) => Value::String(place(&mut config).display().to_string()),
             Place::Address(place) => Value::String(place(&mut config).to_string()),
+            Place::Origins(place) => {
+                Value::Array(place(&mut config).iter().cloned().map(Value::String).collect())
+            }
             Place::Rectangle(place) => {
                 Value::Array(place(&mut config).iter().map(|v| Value::Float(*v)).collect())
             }
@@ -286,6 +300,9 @@ impl Key {
             Place::Text(place) => *place(config) = text(value)?.into(),
             Place::Path(place) => *place(config) = text(value)?.into(),
             Place::Address(place) => *place(config) = value.as_str()?.parse().ok()?,
+            Place::Origins(place) => {
+                *place(config) = value.as_array()?.iter().map(origin).collect::<Option<_>>()?;
+            }
             Place::Rectangle(place) => {
                 let corners = lengths::<4>(value)?;
                 let [min_x, min_y, max_x, max_y] = corners;
@@ -339,4 +356,13 @@ fn number(value: &Value) -> Option<f64> {
 
 fn text(value: &Value) -> Option<&str> {
     value.as_str().filter(|v| !v.trim().is_empty())
+}
+
+/// What a browser writes into `Origin`: scheme, host and port without a path, or `null`.
+fn origin(value: &Value) -> Option<String> {
+    let origin = value.as_str()?;
+    let is_one = origin.split_once("://").map_or(origin == "null", |(scheme, host)| {
+        !scheme.is_empty() && !host.contains(['/', '*', '?', '#']) && (scheme == "file" || !host.is_empty())
+    });
+    (is_one && !origin.contains(char::is_whitespace)).then(|| origin.to_ascii_lowercase())
 }

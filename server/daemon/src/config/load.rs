@@ -192,7 +192,20 @@ mod tests {
             let mut config = defaults.clone();
             assert!(key.set(&mut config, &key.value(&defaults)), "{} refuses its own default", key.name);
             assert_eq!(config, defaults, "{}", key.name);
-            assert!(!key.set(&mut config, &Value::Array(vec![])), "{} takes an empty list", key.name);
+            let nonsense = Value::Array(vec![Value::Boolean(true)]);
+            assert!(!key.set(&mut config, &nonsense), "{} takes a list of a truth value", key.name);
+        }
+    }
+
+    #[test]
+    fn an_origin_is_scheme_and_host_and_no_pattern() {
+        let load =
+            |origin: &str| load_text(&format!("[clients]\nallowed_origins = [\"{origin}\"]"), "f.toml");
+        for good in ["null", "file://", "http://localhost:5173"] {
+            assert_eq!(load(good).unwrap().config.clients.allowed_origins, [good]);
+        }
+        for bad in ["*", "http://*", "http://lab.example/", "lab.example", "http://", ""] {
+            assert!(load(bad).unwrap_err().to_string().contains("allowed_origins"), "{bad}");
         }
     }
 

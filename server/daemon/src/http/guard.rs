@@ -1,5 +1,6 @@
 //! Browsers on other sites may not move the machine: a request that says where it comes from must come from
 //! this server's own pages. Programs send no `Origin` and are not concerned. The stop is open to everybody.
+//! Pages that the configuration names (`clients.allowed_origins`) may connect as VR clients, and nothing else.
 
 use std::net::IpAddr;
 use std::sync::Arc;
@@ -18,7 +19,9 @@ pub async fn same_host(State(app): State<Arc<App>>, request: Request, next: Next
         return next.run(request).await;
     }
     let loopback_only = app.config.server.bind.ip().is_loopback();
-    match refusal(request.headers(), loopback_only) {
+    let allowed: &[String] =
+        if request.uri().path() == CLIENTS { &app.config.clients.allowed_origins } else { &[] };
+    match refusal(request.headers(), loopback_only, allowed) {
         Some(why) => Problem::forbidden(why).into_response(),
         None => next.run(request).await,
     }
@@ -26,7 +29,7 @@ pub async fn same_host(State(app): State<Arc<App>>, request: Request, next: Next
 
 /// Why these headers are refused. On a server that only this machine reaches, the host must be this machine:
 /// a name of someone's own that resolves to it would be another site in disguise.
-fn refusal(headers: &HeaderMap, loopback_only: bool) -> Option<String> {
+fn refusal(headers: &HeaderMap, loopback_only: bool, allowed: &[String]) -> Option<String> {
     let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
     if let Some(host) = host
         && loopback_only
@@ -35,6 +38,9 @@ fn refusal(headers: &HeaderMap, loopback_only: bool) -> Option<String> {
         return Some(format!("host {host} is not this machine"));
     }
     let origin = headers.get(header::ORIGIN)?.to_str().unwrap_or("an unreadable origin");
+    if allowed.iter().any(|allowed| allowed.eq_ignore_ascii_case(origin)) {
+        return None;
+    }
     let origin_host = origin.split_once("://").map(|(_, host)| host);
     (origin_host.is_none() || origin_host != host).then(|| {
         format!("requests from pages of {origin} are refused; this is {}", host.unwrap_or("nameless"))
@@ -51,18 +57,24 @@ fn is_this_machine(host: &str) -> bool {
 }
 
 const STOP: &str = "/api/v1/stop";
+const CLIENTS: &str = "/ws/v1/client";
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn refused(host: &str, origin: Option<&str>, loopback_only: bool) -> bool {
+        refused_but_for(&[], host, origin, loopback_only)
+    }
+
+    fn refused_but_for(allowed: &[&str], host: &str, origin: Option<&str>, loopback_only: bool) -> bool {
+        let allowed: Vec<String> = allowed.iter().map(|&origin| origin.into()).collect();
         let mut headers = HeaderMap::new();
         headers.insert(header::HOST, host.parse().unwrap());
         if let Some(origin) = origin {
             headers.insert(header::ORIGIN, origin.parse().unwrap());
         }
-        refusal(&headers, loopback_only).is_some()
+        refusal(&headers, loopback_only, &allowed).is_some()
     }
 
     #[test]
@@ -79,5 +91,14 @@ mod tests {
         assert!(refused("127.0.0.1:7878", Some("http://127.0.0.1:3000"), true));
         assert!(refused("127.0.0.1:7878", Some("null"), true));
         assert!(refused("rebound.example:7878", Some("http://rebound.example:7878"), true));
+    }
+
+    #[test]
+    fn an_origin_that_is_allowed_passes_alone_and_the_host_is_still_looked_at() {
+        let allowed = ["null", "http://localhost:5173"];
+        assert!(!refused_but_for(&allowed, "127.0.0.1:7878", Some("null"), true));
+        assert!(!refused_but_for(&allowed, "127.0.0.1:7878", Some("http://localhost:5173"), true));
+        assert!(refused_but_for(&allowed, "127.0.0.1:7878", Some("http://localhost:5174"), true));
+        assert!(refused_but_for(&allowed, "rebound.example:7878", Some("null"), true));
     }
 }

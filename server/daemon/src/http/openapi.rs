@@ -47,7 +47,13 @@ pub fn split(router: OpenApiRouter<Arc<App>>) -> (Router<Arc<App>>, Document) {
     let (router, document) = router.split_for_parts();
     let mut document = serde_json::to_value(document).unwrap_or_default();
     add_wire_schemas(&mut document);
-    (router, Document(document.to_string().into()))
+    (router, document.into())
+}
+
+impl From<Value> for Document {
+    fn from(document: Value) -> Self {
+        Self(document.to_string().into())
+    }
 }
 
 impl IntoResponse for Document {

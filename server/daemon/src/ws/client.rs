@@ -179,6 +179,6 @@ async fn say(
 }
 
 /// Frames up to here are read, to be refused in words; longer ones end the connection.
-const MOST_READ_BYTES: usize = 1024 * 1024;
+pub const MOST_READ_BYTES: usize = 1024 * 1024;
 const REPLY_QUEUE: usize = 64;
 const PREDICT_EVERY: Span = Span::from_millis(95);

@@ -182,5 +182,6 @@ async fn say(sink: &mut SplitSink<WebSocket, Message>, message: &ToDashboard) ->
     send(sink, Message::Text(text.into())).await
 }
 
-const MOST_MESSAGE_BYTES: usize = 64 * 1024;
+/// The longest message from a dashboard; longer ones end the connection.
+pub const MOST_MESSAGE_BYTES: usize = 64 * 1024;
 const ANSWER_QUEUE: usize = 64;

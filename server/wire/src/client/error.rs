@@ -1,12 +1,13 @@
 //! What is wrong with what a client said: which field, what was found, what was expected.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
 use crate::complaint::{Complaint, Fault};
 
 /// A refused message. It changes nothing.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize, JsonSchema, TS)]
 #[error("{message}")]
 pub struct ClientError {
     /// What kind of wrong.
@@ -24,7 +25,7 @@ pub struct ClientError {
 }
 
 /// What kind of wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorCode {
     /// Longer than a frame may be.

@@ -102,10 +102,10 @@ impl Bucket {
     }
 }
 
-/// The protocol's upper pose rate.
-const MOST_POSES_PER_SEC: f64 = 120.0;
-/// Pings, touches, scene events.
-const OTHER_MESSAGES_PER_SEC: f64 = 60.0;
+/// The protocol's upper pose rate, of one person.
+pub const MOST_POSES_PER_SEC: f64 = 120.0;
+/// Pings, touches, scene events of one connection.
+pub const OTHER_MESSAGES_PER_SEC: f64 = 60.0;
 
 #[cfg(test)]
 mod tests {

@@ -1,5 +1,6 @@
 //! What the server says to a VR client.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
@@ -8,7 +9,7 @@ use crate::dashboard::Mode;
 use crate::scene::SceneDocument;
 
 /// What the server says to a client.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum ToClient {
     /// The answer to a hello.
@@ -28,7 +29,7 @@ pub enum ToClient {
 }
 
 /// The answer to a hello.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 pub struct Welcome {
     /// The server's version.
     pub server_version: String,
@@ -44,7 +45,7 @@ pub struct Welcome {
 }
 
 /// What the machine and the protocol allow, SI units, room axes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 pub struct ClientLimits {
     /// Greatest speed of the column along x and y, m/s.
     pub speed_mps: [f64; 2],
@@ -61,7 +62,7 @@ pub struct ClientLimits {
 }
 
 /// The active scene, and how to find it in the client's space.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 pub struct ActiveScene {
     /// Store id.
     #[ts(type = "number")]
@@ -78,7 +79,7 @@ pub struct ActiveScene {
 }
 
 /// Where an object is, in the client's convention and units.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 pub struct ObjectPlace {
     /// Its id.
     pub object: String,
@@ -89,7 +90,7 @@ pub struct ObjectPlace {
 }
 
 /// Where the column is, in the client's convention and units.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 pub struct ColumnNow {
     /// Server time, microseconds since its start.
     #[ts(type = "number")]
@@ -107,7 +108,7 @@ pub struct ColumnNow {
 }
 
 /// Whether what stands in for an object is there.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 pub struct PropAt {
     /// The object's id.
     pub object: String,
@@ -118,7 +119,7 @@ pub struct PropAt {
 }
 
 /// What the visitor will touch next, and whether the column will be there.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 pub struct Prediction {
     /// Server time, microseconds since its start.
     #[ts(type = "number")]
@@ -134,7 +135,7 @@ pub struct Prediction {
 }
 
 /// Whether the machine is stopped, and why.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 pub struct StopState {
     /// In a stop or faulted.
     pub stopped: bool,
@@ -149,7 +150,7 @@ pub struct StopState {
 }
 
 /// The answer to a ping.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, TS)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
 pub struct ClockPong {
     /// The ping's.
     pub id: u32,
