@@ -16,6 +16,7 @@ export function Arena(props: {
   readonly layers?: () => Layers;
   readonly describedBy?: string;
   readonly testId?: string;
+  readonly listsKeys?: boolean;
   readonly children?: JSX.Element;
 }): JSX.Element {
   const painter = new ArenaPainter();
@@ -37,6 +38,7 @@ export function Arena(props: {
       label={props.label}
       describedBy={props.describedBy}
       testId={props.testId}
+      listsKeys={props.listsKeys === true}
     >
       {props.children}
     </PlanCanvas>

@@ -6,6 +6,7 @@ import { batch, createEffect, createMemo, createSignal, onCleanup, onMount, untr
 import { words } from "../i18n";
 import { pannedBy, planOf, zoomedAbout, type Camera, type Frame } from "../lib/camera";
 import type { Bounds, Point } from "../lib/plan";
+import { useShortcuts, type Shortcut } from "../lib/shortcuts";
 import { readPalette, type Palette } from "../lib/theme";
 import { Stamps, type Brush } from "./drawing/brush";
 
@@ -21,6 +22,8 @@ export interface PlanCanvasProps {
   /** The id of a longer text about it. */
   readonly describedBy?: string | undefined;
   readonly testId?: string | undefined;
+  /** Its keys stand in the list of shortcuts; one picture of a page is enough. */
+  readonly listsKeys?: boolean;
   /** Laid over the picture. */
   readonly children?: JSX.Element;
 }
@@ -83,16 +86,29 @@ export function PlanCanvas(props: PlanCanvasProps): JSX.Element {
     return [event.clientX - box.left, event.clientY - box.top];
   };
 
+  const perform = (act: Act): void => {
+    if (act === "fit") fit();
+    else if (typeof act === "number") zoomBy(act, null);
+    else moveBy(act);
+  };
   const pressed = (event: KeyboardEvent): void => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const act = KEYS[event.key];
     if (act === undefined) return;
     event.preventDefault();
     event.stopPropagation();
-    if (act === "fit") fit();
-    else if (typeof act === "number") zoomBy(act, null);
-    else moveBy(act);
+    perform(act);
   };
+
+  if (props.listsKeys === true) {
+    // The picture's own handler comes first, and repeats while a key is held; here they are only listed.
+    useShortcuts(
+      Object.entries(KEYS).flatMap(([key, act]): Shortcut[] => {
+        const does = DOES[key];
+        return act === undefined || does === undefined ? [] : [{ key, group: "picture", does: () => words().live[does], run: () => { perform(act); }, within: () => surface }];
+      }),
+    );
+  }
 
   /** Fingers, or the mouse, that hold the picture. */
   const held = new Map<number, Point>();
@@ -201,12 +217,15 @@ function sameBounds(one: Bounds | null, other: Bounds | null): boolean {
   return [0, 1].every((axis) => one.min[axis] === other.min[axis] && one.max[axis] === other.max[axis]);
 }
 
+/** Panned by some px, zoomed by a factor, or all of it shown. */
+type Act = Point | number | "fit";
+
 /** One press on a button or key. */
 const STEP = 1.25;
 /** One press on an arrow, px. */
 const ARROW_PX = 48;
 /** As an arrow moves the view, the picture moves the other way. */
-const KEYS: Readonly<Record<string, Point | number | "fit" | undefined>> = {
+const KEYS: Readonly<Record<string, Act | undefined>> = {
   ArrowLeft: [ARROW_PX, 0],
   ArrowRight: [-ARROW_PX, 0],
   ArrowUp: [0, ARROW_PX],
@@ -215,6 +234,16 @@ const KEYS: Readonly<Record<string, Point | number | "fit" | undefined>> = {
   "=": STEP,
   "-": 1 / STEP,
   "0": "fit",
+};
+/** What is listed of them; `=` is the unshifted plus. */
+const DOES: Readonly<Record<string, "panLeft" | "panRight" | "panUp" | "panDown" | "closer" | "wider" | "all" | undefined>> = {
+  ArrowLeft: "panLeft",
+  ArrowRight: "panRight",
+  ArrowUp: "panUp",
+  ArrowDown: "panDown",
+  "+": "closer",
+  "-": "wider",
+  "0": "all",
 };
 const LINE_PX = 16;
 /** A wheel's click is about 100 px. */

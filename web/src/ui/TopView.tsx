@@ -59,7 +59,7 @@ export function TopView(props: { readonly live: Live; readonly picture: Accessor
         </dl>
       </div>
       <div class="canvas-frame">
-        <Arena picture={props.picture} layers={layers} label={() => describe(props.live)} describedBy="top-view-summary" testId="top-view">
+        <Arena picture={props.picture} layers={layers} label={() => describe(props.live)} describedBy="top-view-summary" testId="top-view" listsKeys>
           <Show when={stale()}>
             {(freshness) => (
               <div class="stale-stamp" aria-hidden="true">
