@@ -7,6 +7,7 @@ mod config;
 mod contract;
 mod dashboards;
 mod guards;
+mod links;
 mod machine;
 mod person;
 mod priors;

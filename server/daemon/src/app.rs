@@ -15,6 +15,7 @@ use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::config::{Config, Origins};
 use crate::control::{Control, NotDelivered, NotReached, StopLaneName};
+use crate::meters;
 use crate::persons::Persons;
 use crate::recorder::{Recorder, Settled};
 use crate::recording::Recording;
@@ -101,6 +102,7 @@ impl App {
     ) -> Result<Duration, NotReached> {
         let words = reason.clone().unwrap_or_else(|| format!("pressed by {}", asker.author));
         let reached = self.control.stop(lane, words, received_at).await;
+        meters::stop_pressed(lane, reached.as_ref().ok().copied());
         let micros = reached.as_ref().ok().map(|d| d.as_micros() as u64);
         let summary = match micros {
             Some(micros) => format!("{} pressed stop; at the drive after {micros} us", asker.author),

@@ -27,6 +27,11 @@ impl Clock {
         Time::from_micros(instant.saturating_duration_since(self.started).as_micros() as i64)
     }
 
+    /// A moment on the operating system's monotonic clock; what was before the start becomes the start.
+    pub fn instant_of(&self, time: Time) -> Instant {
+        self.started + Duration::from_micros(time.micros().max(0) as u64)
+    }
+
     /// The wall clock at a moment, RFC 3339.
     pub fn wall_text(&self, time: Time) -> String {
         let since = Duration::from_micros(time.micros().max(0) as u64);

@@ -13,6 +13,7 @@ use std::path::PathBuf;
 use covr_engine::frames::Floor;
 use covr_engine::intention::RuleName;
 use covr_engine::machine::{AxisLimits, Limits, Travel};
+use covr_wire::dashboard::LinkThresholds;
 
 pub use keys::{Key, all as keys};
 pub use load::{ConfigError, load, load_text, reference};
@@ -35,6 +36,8 @@ pub struct Config {
     pub clients: Clients,
     /// Dashboards.
     pub dashboards: Dashboards,
+    /// From where on links are shown as weak and bad.
+    pub links: LinkThresholds,
     /// Logs.
     pub log: Log,
 }
@@ -193,6 +196,7 @@ impl Default for Config {
                 allowed_origins: Vec::new(),
             },
             dashboards: Dashboards { most: 32, event_queue: 1_024 },
+            links: LinkThresholds::USUAL,
             log: Log { format: LogFormat::Text, level: "info".into() },
         }
     }

@@ -11,6 +11,7 @@ mod problem;
 mod records;
 mod scenes;
 mod sessions;
+mod timing;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -58,6 +59,7 @@ pub fn router(app: Arc<App>) -> Router {
         .layer(PropagateRequestIdLayer::x_request_id())
         .layer(from_fn(problem::finish))
         .layer(from_fn_with_state(app.clone(), guard::same_host))
+        .layer(from_fn(timing::measure))
         .layer(CatchPanicLayer::new())
         .layer(TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, time_out))
         .layer(DefaultBodyLimit::max(MAX_SCENE_BYTES));

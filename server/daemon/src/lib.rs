@@ -14,6 +14,7 @@ pub mod control;
 pub mod http;
 pub mod live;
 pub mod logs;
+pub mod meters;
 pub mod persons;
 pub mod recorder;
 pub mod recording;

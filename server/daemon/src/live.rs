@@ -10,6 +10,7 @@ use tokio::sync::watch;
 
 use crate::app::App;
 use crate::control::Published;
+use crate::meters;
 
 /// The wire's snapshot of a published state.
 pub fn wire_snapshot(app: &App, published: &Published) -> Snapshot {
@@ -49,12 +50,12 @@ pub async fn publish(app: Arc<App>, frames: watch::Sender<Arc<str>>) {
 /// Metrics, at most four times a second.
 struct Meter {
     next: Instant,
+    next_upkeep: Instant,
 }
 
 impl Meter {
     fn new() -> Self {
-        gauge!("covr_build_info", "version" => env!("CARGO_PKG_VERSION")).set(1.0);
-        Self { next: Instant::now() }
+        Self { next: Instant::now(), next_upkeep: Instant::now() }
     }
 
     fn show(&mut self, app: &App, published: &Published, dashboards: usize) {
@@ -62,6 +63,11 @@ impl Meter {
             return;
         }
         self.next = Instant::now() + Duration::from_millis(250);
+        if Instant::now() >= self.next_upkeep {
+            self.next_upkeep = Instant::now() + Duration::from_secs(5);
+            meters::upkeep(&app.prometheus);
+        }
+        gauge!("covr_build_info", "version" => env!("CARGO_PKG_VERSION")).set(1.0);
         let control_loop = &published.control_loop;
         counter!("covr_control_steps_total").absolute(control_loop.steps);
         counter!("covr_control_missed_deadlines_total").absolute(control_loop.missed_deadlines);
@@ -73,18 +79,13 @@ impl Meter {
         }
         counter!("covr_events_dropped_total").absolute(app.control.events_dropped() + app.recorder.dropped());
         counter!("covr_recording_dropped_frames_total").absolute(app.recording.dropped());
-        gauge!("covr_clients").set(app.clients.list().len() as f64);
+        let clients = app.clients.list();
+        meters::show_links(&clients);
+        gauge!("covr_clients").set(clients.len() as f64);
         gauge!("covr_dashboards").set(dashboards as f64);
         gauge!("covr_persons").set(published.snapshot.persons.len() as f64);
         gauge!("covr_session_running").set(if app.recorder.session_id().is_some() { 1.0 } else { 0.0 });
         let speed = published.snapshot.column.velocity.norm();
         gauge!("covr_column_speed_mps").set(speed);
-    }
-}
-
-/// Register every metric of the sockets, so that each is there from the first scrape on.
-pub fn describe_metrics() {
-    for name in ["covr_poses_total", "covr_client_errors_total", "covr_store_errors_total"] {
-        counter!(name).increment(0);
     }
 }

@@ -14,6 +14,7 @@ use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
 use crate::clock::Clock;
 use crate::control::EngineEvent;
+use crate::meters;
 use crate::persons::Persons;
 use crate::stage::Stage;
 use crate::store::{NewEvent, NewSession, SessionEnd, Store, StoreError};
@@ -190,6 +191,9 @@ impl Task {
                 } else {
                     None
                 };
+                if let EventKind::RuleBreached { rule, .. } = event.kind {
+                    meters::rule_breached(rule);
+                }
                 if let Some((_, Mode::Following, _)) = change {
                     self.begin_session(&at, event.at).await;
                 }
@@ -272,6 +276,7 @@ impl Task {
 
     async fn end_session(&mut self, at: &str, time: Time, how: SessionEnd) {
         let Some(id) = self.session.send_replace(None) else { return };
+        meters::session_ended(how);
         if let Some(span) = self.spans.back_mut() {
             span.to_micros = Some(time.micros());
         }

@@ -2,7 +2,7 @@
 
 use std::future::Future;
 use std::net::SocketAddr;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
@@ -16,7 +16,6 @@ use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::MachineParameters;
 use covr_wire::dashboard::MachineShape;
 use covr_wire::scene::parse_scene;
-use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, watch};
 use tokio::task::JoinHandle;
@@ -31,7 +30,7 @@ use crate::recorder::{Desk, Recorder};
 use crate::recording::{Booth, Recording};
 use crate::stage::{ActiveScene, Stage};
 use crate::store::Store;
-use crate::{http, live};
+use crate::{http, live, meters};
 
 /// A running server.
 pub struct Server {
@@ -55,7 +54,7 @@ impl Server {
     pub async fn start(config: impl Into<Loaded>, reach: Reach) -> anyhow::Result<Self> {
         let Loaded { config, origins } = config.into();
         check_reach(&config, reach)?;
-        let prometheus = prometheus()?;
+        let prometheus = meters::install()?;
         let clock = Clock::started_now();
         let path = &config.server.database;
         let store = Store::open(path).await.with_context(|| format!("database {}", path.display()))?;
@@ -120,7 +119,6 @@ impl Server {
         let dashboards = config.dashboards.most;
         let closing = watch::Sender::new(None);
         let frames = watch::Sender::new(Arc::from(""));
-        live::describe_metrics();
         let app = Arc::new(App {
             config,
             origins,
@@ -322,15 +320,6 @@ async fn active_scene(store: &Store, last: Option<(i64, i64)>) -> anyhow::Result
     store.set_active_scene(id, 1).await?;
     let stored = store.scene(id, Some(1)).await?.context("the scene that was just stored is missing")?;
     ActiveScene::build(stored).map_err(|errors| anyhow::anyhow!("{errors:?}"))
-}
-
-/// One recorder of metrics for the process, however many servers a test starts.
-fn prometheus() -> anyhow::Result<PrometheusHandle> {
-    static HANDLE: OnceLock<Result<PrometheusHandle, String>> = OnceLock::new();
-    HANDLE
-        .get_or_init(|| PrometheusBuilder::new().install_recorder().map_err(|why| why.to_string()))
-        .clone()
-        .map_err(|why| anyhow::anyhow!("metrics: {why}"))
 }
 
 const FIRST_SCENE: &str = include_str!("../../../deploy/scenes/demo.json");

@@ -6,6 +6,7 @@ mod complaint;
 pub mod convention;
 pub mod dashboard;
 pub mod examples;
+pub mod link;
 pub mod records;
 mod sample;
 pub mod scene;

@@ -1,12 +1,16 @@
 //! Every key: its name, its meaning, what it accepts and the place that it fills. The reference text, the
 //! example file and the errors all come from this one table.
 
+mod links;
+
 use std::net::SocketAddr;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use covr_engine::intention::RuleName;
 use toml::Value;
+
+pub use links::out_of_order;
 
 use super::{Config, LogFormat, MachineKind};
 
@@ -42,7 +46,7 @@ enum Place {
 
 /// Every key, section by section.
 pub fn all() -> Vec<Key> {
-    vec![
+    let mut keys = vec![
         Key::new(
             "server.bind",
             "Where the server listens. Another address than this machine's own needs --insecure-lan.",
@@ -208,6 +212,9 @@ pub fn all() -> Vec<Key> {
             "Events that may wait for a slow dashboard before it is disconnected to start afresh.",
             Place::Whole(16..=65_536, |c| &mut c.dashboards.event_queue),
         ),
+    ];
+    keys.extend(links::keys());
+    keys.extend([
         Key::new(
             "log.format",
             "Log lines as text for people or as JSON.",
@@ -218,7 +225,8 @@ pub fn all() -> Vec<Key> {
             "error, warn, info, debug, trace, or directives such as \"info,covr_server=debug\".",
             Place::Text(|c| &mut c.log.level),
         ),
-    ]
+    ]);
+    keys
 }
 
 impl Key {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use toml::Value;
 
-use super::keys::{Key, all};
+use super::keys::{Key, all, out_of_order};
 use covr_wire::records::ConfigOrigin;
 
 use super::{Config, Loaded, LogFormat};
@@ -51,6 +51,18 @@ pub enum ConfigError {
         /// What was expected.
         expected: String,
     },
+    /// A measure would be bad before it is weak.
+    #[error("`{weak_key}`: found {weak}, expected less than `{bad_key}`, which is {bad}")]
+    WeakNotBelowBad {
+        /// The key of the one.
+        weak_key: &'static str,
+        /// Its value.
+        weak: f64,
+        /// The key of the other.
+        bad_key: &'static str,
+        /// Its value.
+        bad: f64,
+    },
 }
 
 /// The configuration of a file (or the defaults without one), with the environment's overrides.
@@ -62,7 +74,7 @@ pub fn load(
     if let Some(path) = file {
         let text = std::fs::read_to_string(path)
             .map_err(|source| ConfigError::Unreadable { path: path.into(), source })?;
-        loaded = load_text(&text, &path.display().to_string())?;
+        loaded = read_text(&text, &path.display().to_string())?;
         loaded.origins.read(path);
     }
     for (name, found) in environment {
@@ -75,11 +87,15 @@ pub fn load(
         let key = set(&mut loaded.config, &key, &value, &format!("environment variable {name}"))?;
         loaded.origins.set(key, ConfigOrigin::Environment);
     }
-    Ok(loaded)
+    checked(loaded)
 }
 
 /// The configuration of a TOML text.
 pub fn load_text(text: &str, origin: &str) -> Result<Loaded, ConfigError> {
+    checked(read_text(text, origin)?)
+}
+
+fn read_text(text: &str, origin: &str) -> Result<Loaded, ConfigError> {
     let table: toml::Table = toml::from_str(text)
         .map_err(|error| ConfigError::NotToml { origin: origin.into(), message: error.to_string() })?;
     let mut loaded = Loaded::default();
@@ -91,6 +107,16 @@ pub fn load_text(text: &str, origin: &str) -> Result<Loaded, ConfigError> {
         loaded.origins.set(key, ConfigOrigin::File);
     }
     Ok(loaded)
+}
+
+/// What no key can tell by itself.
+fn checked(loaded: Loaded) -> Result<Loaded, ConfigError> {
+    match out_of_order(&loaded.config) {
+        Some([(weak_key, weak), (bad_key, bad)]) => {
+            Err(ConfigError::WeakNotBelowBad { weak_key, weak, bad_key, bad })
+        }
+        None => Ok(loaded),
+    }
 }
 
 /// A TOML text with every key, its meaning and the value of `config`.
@@ -226,6 +252,24 @@ mod tests {
         assert_eq!(error.to_string(), "f.toml: `people.v_h_mps`: found 0.2, expected a number from 1.6 to 3");
         let error = load_text("[server]\nbind = 7878", "f.toml").unwrap_err();
         assert!(error.to_string().contains("`server.bind`: found 7878, expected an address"), "{error}");
+    }
+
+    #[test]
+    fn a_measure_that_would_be_bad_before_it_is_weak_is_refused_with_both_keys() {
+        let file = "[links]\njitter_weak_millis = 30\n";
+        let error = load_text(file, "f.toml").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "`links.jitter_weak_millis`: found 30, expected less than `links.jitter_bad_millis`, which is 25"
+        );
+        for key in all().iter().filter(|key| key.name.starts_with("links.") && key.name.contains("_weak_")) {
+            let mut loaded = Loaded::default();
+            let bad = all().into_iter().find(|bad| bad.name == key.name.replace("_weak_", "_bad_")).unwrap();
+            assert!(key.set(&mut loaded.config, &bad.value(&Config::default())), "{}", key.name);
+            assert!(checked(loaded).is_err(), "{} may equal {}", key.name, bad.name);
+        }
+        let both = load_text("[links]\njitter_weak_millis = 30\njitter_bad_millis = 40\n", "f.toml").unwrap();
+        assert!((both.config.links.jitter_millis.weak - 30.0).abs() < 1e-12);
     }
 
     #[test]

@@ -43,6 +43,16 @@ struct Written {
 impl StopLaneName {
     /// Every lane.
     pub const ALL: [Self; 4] = [Self::Http, Self::Dashboard, Self::Signal, Self::Server];
+
+    /// The name on every surface.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Http => "http",
+            Self::Dashboard => "dashboard",
+            Self::Signal => "signal",
+            Self::Server => "server",
+        }
+    }
 }
 
 impl Default for StopLane {

@@ -148,6 +148,14 @@ async fn a_panic_stops_the_machine_and_is_told() {
 #[tokio::test]
 async fn the_last_word_to_a_released_drive_is_release() {
     let stage = start();
+    let mut published = stage.control.watch_published();
+    // The drive is found on, and released once the machine has been at rest for a while.
+    within("a released drive", async {
+        while stage.told.lock().unwrap().last() != Some(&Action::Release) {
+            published.changed().await.unwrap();
+        }
+    })
+    .await;
     stage.control.quit();
     assert_eq!(within("the end", stage.control.ended()).await, Ended::AsAsked);
     assert_eq!(stage.told.lock().unwrap().last(), Some(&Action::Release));

@@ -22,6 +22,7 @@ use super::lateness::Lateness;
 use super::stop_lane::{StopLane, StopLaneName};
 use super::{Control, Ended, EngineEvent, Published, Setup, real_time};
 use crate::clock::Clock;
+use crate::meters;
 use crate::recorder::Record;
 
 /// Start the thread; see [`Control::start`].
@@ -73,6 +74,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
         published,
         next_publish: Instant::now(),
         lateness: Lateness::over_ten_seconds(rate_hz),
+        lateness_meter: meters::lateness(),
         control_loop,
     };
     let priority = setup.real_time_priority;
@@ -108,6 +110,7 @@ struct Run {
     published: watch::Sender<Arc<Published>>,
     next_publish: Instant,
     lateness: Lateness,
+    lateness_meter: metrics::Histogram,
     control_loop: ControlLoop,
 }
 
@@ -137,6 +140,7 @@ impl Run {
 
     fn count(&mut self, late: Duration) {
         self.lateness.add(late.as_micros() as i64);
+        self.lateness_meter.record(late.as_secs_f64());
         let now = self.clock.now();
         if late > self.period {
             self.control_loop.missed_deadlines += 1;

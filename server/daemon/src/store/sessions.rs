@@ -50,6 +50,10 @@ pub struct SessionFilter {
 }
 
 impl SessionEnd {
+    /// Every end.
+    pub const ALL: [Self; 5] =
+        [Self::Disarmed, Self::LatchedStop, Self::Faulted, Self::Shutdown, Self::Interrupted];
+
     /// The name on every surface.
     pub const fn name(self) -> &'static str {
         match self {

@@ -73,9 +73,15 @@ async fn read(
     let wait = |secs: f64| Instant::now() + Duration::from_secs_f64(secs);
     let mut deadline = wait(app.config.clients.hello_timeout_secs);
     loop {
-        let message = match timeout_at(deadline, stream.next()).await {
+        let next_show = app.clock.instant_of(guest.next_show()).into();
+        let message = match timeout_at(deadline.min(next_show), stream.next()).await {
             Ok(Some(Ok(message))) => message,
             Ok(Some(Err(_)) | None) => return,
+            // A silent client is shown as it stands now, not as it stood when it last spoke.
+            Err(_) if Instant::now() < deadline => {
+                guest.show(app.clock.now());
+                continue;
+            }
             Err(_) => {
                 let _ = replies.try_send(guest.silent());
                 return;

@@ -13,9 +13,7 @@ use axum::response::{IntoResponse, Response};
 use covr_engine::mode::RequestKind;
 use covr_engine::observation::PersonId;
 use covr_engine::{Answer, Outcome};
-use covr_wire::dashboard::{
-    FromDashboard, LinkThresholds, MachineRequest, MachineShape, Snapshot, ToDashboard,
-};
+use covr_wire::dashboard::{FromDashboard, MachineRequest, MachineShape, Snapshot, ToDashboard};
 use futures_util::StreamExt;
 use futures_util::stream::{SplitSink, SplitStream};
 use tokio::sync::broadcast::error::RecvError;
@@ -168,7 +166,7 @@ fn welcome(app: &App) -> ToDashboard {
         version: env!("CARGO_PKG_VERSION").into(),
         machine: machine.kind.name().into(),
         machine_shape: MachineShape::new(&machine.travel(), &machine.limits()),
-        link_thresholds: LinkThresholds::USUAL,
+        link_thresholds: app.config.links,
     }
 }
 

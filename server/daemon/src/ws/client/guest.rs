@@ -16,11 +16,13 @@ use covr_wire::client::{
 use covr_wire::clock::ClientClock;
 use covr_wire::convention::ClientFrame;
 use covr_wire::dashboard::Client;
+use covr_wire::link::{Link, LinkFigures};
 use serde_json::json;
 
 use crate::app::App;
 use crate::clients::Seat;
 use crate::control::PoseSlot;
+use crate::meters::ClientMeters;
 use crate::persons::Entry;
 
 /// What the client is to hear.
@@ -46,6 +48,7 @@ pub struct Guest {
     poses: u64,
     errors: u64,
     pose_times: VecDeque<Time>,
+    meters: ClientMeters,
     next_show: Time,
 }
 
@@ -60,6 +63,7 @@ struct Present {
     id: PersonId,
     slot: PoseSlot,
     sequencer: Sequencer,
+    link: Link,
 }
 
 impl Guest {
@@ -77,6 +81,7 @@ impl Guest {
             poses: 0,
             errors: 0,
             pose_times: VecDeque::new(),
+            meters: ClientMeters::default(),
             next_show: Time::ZERO,
         }
     }
@@ -108,6 +113,11 @@ impl Guest {
             ClientError::plain(ErrorCode::HelloExpected, format!("no hello came within {secs} s"))
         };
         Reply::LastWords(error.fatal())
+    }
+
+    /// When it is to be shown next.
+    pub fn next_show(&self) -> Time {
+        self.next_show
     }
 
     /// It has said who it is.
@@ -208,7 +218,8 @@ impl Guest {
         let told = self.tell(seen).and_then(|()| self.app.control.connect_headset(id).map_err(busy));
         match told {
             Ok(slot) => {
-                self.persons.insert(person.to_owned(), Present { id, slot, sequencer: Sequencer::default() });
+                let (sequencer, link) = (Sequencer::default(), Link::default());
+                self.persons.insert(person.to_owned(), Present { id, slot, sequencer, link });
                 Ok(())
             }
             Err(error) => {
@@ -225,15 +236,18 @@ impl Guest {
             let expected = format!("more than {}", wrong.last);
             ClientError::at(ErrorCode::OutOfOrder, "sequence", wrong.found.to_string(), expected)
         })?;
+        let taken_at = self.clock.server_time(pose.client_time_micros, received);
         present.slot.put(PoseSample {
-            taken_at: self.clock.server_time(pose.client_time_micros, received),
+            taken_at,
             pose: greeted.frame.room_pose(pose.position, pose.orientation),
             tracked: pose.tracked,
             worn: pose.worn,
         });
+        present.link.pose(pose.sequence, pose.client_time_micros, taken_at, received);
         self.poses += 1;
         self.pose_times.push_back(received);
-        metrics::counter!("covr_poses_total").increment(1);
+        self.meters.poses.increment(1);
+        self.meters.pose_age.record((received - taken_at).secs());
         Ok(())
     }
 
@@ -263,7 +277,7 @@ impl Guest {
 
     fn refuse(&mut self, error: ClientError, received: Time) -> Reply {
         self.errors += 1;
-        metrics::counter!("covr_client_errors_total").increment(1);
+        self.meters.errors.increment(1);
         let closes = error.fatal || self.gauge.error(received) == Verdict::Close;
         // The first error is recorded, and the one that ends it; those between are counted.
         if self.errors == 1 || closes {
@@ -275,12 +289,14 @@ impl Guest {
         if closes { Reply::LastWords(error.fatal()) } else { Reply::Say(ToClient::Error(error)) }
     }
 
-    fn show(&mut self, now: Time) {
-        let Some(greeted) = &self.greeted else { return };
+    /// Show how it stands to dashboards and metrics; due every [`SHOW_EVERY`], also while nothing comes.
+    pub fn show(&mut self, now: Time) {
         self.next_show = now + SHOW_EVERY;
+        let Some(greeted) = &self.greeted else { return };
         while self.pose_times.front().is_some_and(|oldest| now - *oldest > Span::from_millis(1_000)) {
             self.pose_times.pop_front();
         }
+        let link = LinkFigures::of(self.persons.values().map(|present| &present.link), now);
         self.seat.show(Client {
             name: greeted.hello.name.clone(),
             convention: greeted.hello.convention.name().into(),
@@ -288,9 +304,9 @@ impl Guest {
             pose_rate_hz: self.pose_times.len() as f64,
             rtt_millis: self.clock.rtt().map(|rtt| rtt.secs() * 1e3),
             persons: self.persons.values().map(|present| present.id.0).collect(),
-            pose_age_millis: None,
-            jitter_millis: None,
-            loss_percent: None,
+            pose_age_millis: link.pose_age_millis,
+            jitter_millis: link.jitter_millis,
+            loss_percent: link.loss_percent,
             errors: self.errors,
         });
     }
