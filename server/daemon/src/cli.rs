@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use crate::config::LogFormat;
+use crate::evaluate::Evaluate;
 
 /// CoVR: the column is there before your hand is.
 #[derive(Debug, Parser)]
@@ -28,6 +29,8 @@ pub enum Command {
     Check(Check),
     /// Play a person as a VR client: recorded with --trace, else made up.
     Visitor(Visitor),
+    /// Replay recorded people on virtual time and say how often the column was there before the hand.
+    Evaluate(Evaluate),
     /// Ask a running server whether it is ready; exit code 2 if it is not.
     Health(Health),
     /// Print every configuration key with its default and its meaning.

@@ -11,6 +11,7 @@ pub mod clients;
 pub mod clock;
 pub mod config;
 pub mod control;
+pub mod evaluate;
 pub mod http;
 pub mod live;
 pub mod logs;

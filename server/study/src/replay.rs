@@ -3,6 +3,8 @@
 //! Everything happens in one order, decided by seeds and inputs alone, so that two runs are the same bit for bit.
 //! Time moves when [`ClosedLoop::step`] is called and never otherwise.
 
+mod belief;
+mod headset;
 mod link;
 mod standing;
 mod trial;
@@ -22,6 +24,7 @@ use covr_gantry::contract::{Simulated, Truth};
 
 use crate::checker::{Checker, Moment, Motion, PersonNow, Rectangle, Rules, Track, Verdict};
 use crate::random::Random;
+pub use belief::{BeliefThen, BeliefTold, LOOKS_BEFORE_REACH_SECS};
 pub use link::{LinkProfile, PoseLink};
 pub use standing::{CannotStand, bring_to};
 pub use trial::{ReachTrial, TrialOutcome, TrialProblem};

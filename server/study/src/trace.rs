@@ -68,6 +68,8 @@ pub struct Target {
     pub position: Point<Trace>,
     /// Its radius, m.
     pub radius_m: f64,
+    /// The heading from which it is seen, degrees: targets of one wall have the same; none where nobody says.
+    pub view_deg: Option<f64>,
 }
 
 /// When things happened, from the start of the recording; none where the data set has no such moment.

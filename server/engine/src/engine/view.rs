@@ -3,6 +3,7 @@
 use super::Engine;
 use super::following::{IN_PLACE_M, IN_PLACE_MPS};
 use crate::frames::{Floor, Planar};
+use crate::intention::Belief;
 use crate::machine::{Homing, Limits};
 use crate::mode::{self, Mode, RequestKind, Response};
 use crate::motion::travel_secs;
@@ -13,6 +14,16 @@ use crate::snapshot::{Activity, ColumnState, HeldBy, Holder, ObjectState, Person
 use crate::time::Time;
 
 impl Engine {
+    /// What the intention rule makes of the visitor served; none when nobody is.
+    pub fn belief(&self) -> Option<&Belief> {
+        self.following.belief()
+    }
+
+    /// Where the proxy is.
+    pub fn proxy(&self) -> Floor {
+        self.following.proxy().position()
+    }
+
     /// The whole state at `now`.
     pub fn snapshot(&self, now: Time) -> Snapshot {
         let conditions = self.conditions();

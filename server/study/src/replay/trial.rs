@@ -4,15 +4,18 @@ use std::sync::Arc;
 
 use covr_engine::engine::EngineConfig;
 use covr_engine::event::EventKind;
-use covr_engine::frames::Floor;
+use covr_engine::frames::{Floor, Planar};
 use covr_engine::intention::RuleName;
 use covr_engine::machine::Travel;
 use covr_engine::mode::Mode;
-use covr_engine::observation::{Observation, PersonId, PoseSample};
+use covr_engine::observation::{Observation, PersonId};
+use covr_engine::safety::vetted::{Action, Vetted};
 use covr_engine::scene::{ObjectSpec, Scene, SceneProblem, SceneSpec, Shape};
 use covr_engine::time::{Span, Time};
 use covr_gantry::contract::Simulated;
 
+use super::belief::{BeliefTold, BeliefWatch};
+use super::headset::Headset;
 use super::{ClosedLoop, LinkProfile, TrueHead};
 use crate::checker::Verdict;
 use crate::random::Random;
@@ -25,6 +28,8 @@ pub struct ReachTrial<'a> {
     pub recording: &'a Recording,
     /// The targets shown to the engine, as indices into the recording's; the goal is among them.
     pub targets: &'a [usize],
+    /// The scenario prior of each of them; none: 1 for all.
+    pub priors: Option<&'a [f64]>,
     /// The intention rule.
     pub rule: RuleName,
     /// v_h of the separation rule, m/s.
@@ -52,6 +57,12 @@ pub struct TrialOutcome {
     pub stops: u32,
     /// Way of the column, m.
     pub column_travel_m: f64,
+    /// Greatest commanded speed, acceleration and jerk of an axis: m/s, m/s2, m/s3.
+    pub peaks: [f64; 3],
+    /// Mean distance between the column and the proxy, m.
+    pub proxy_distance_m: f64,
+    /// What the rule believed.
+    pub belief: BeliefTold,
     /// Virtual time, s.
     pub simulated_secs: f64,
     /// What the checker says of the true motion.
@@ -124,17 +135,20 @@ impl ReachTrial<'_> {
         };
         let random = Random::seeded(self.seed);
         let control = ClosedLoop::new(config, scene, machine, self.link, random, from);
-        let mut playback =
-            Playback::new(self, control, begins, reach).ok_or_else(|| TrialProblem::NoFrames(trial()))?;
-        playback.warm_up();
-        playback.control.arm().map_err(|mode| TrialProblem::NotArmed { trial: trial(), mode })?;
+        let wall = self.recording.targets[self.targets[goal]].view_deg;
+        let on_wall = |&index: &usize| self.recording.targets[index].view_deg == wall;
+        let same_wall = wall.map(|_| self.targets.iter().map(on_wall).collect());
+        let belief = BeliefWatch::new(goal, same_wall, reach);
+        let mut playback = Playback::new(self, control, belief, begins, reach)
+            .ok_or_else(|| TrialProblem::NoFrames(trial()))?;
+        playback.warm_up().map_err(|mode| TrialProblem::NotArmed { trial: trial(), mode })?;
         Ok(playback.play(place))
     }
 
     /// The scene of the targets shown: spheres, the column without props.
     pub fn scene(&self) -> Result<Scene, Vec<SceneProblem>> {
         let room_from_trace = self.recording.room_from_trace();
-        let objects = self.targets.iter().map(|&index| {
+        let objects = self.targets.iter().enumerate().map(|(shown, &index)| {
             let target = &self.recording.targets[index];
             ObjectSpec {
                 id: target.id.clone(),
@@ -142,7 +156,7 @@ impl ReachTrial<'_> {
                 yaw_rad: 0.0,
                 shape: Shape::Sphere { radius_m: target.radius_m },
                 prop: None,
-                prior: 1.0,
+                prior: self.priors.and_then(|priors| priors.get(shown)).copied().unwrap_or(1.0),
                 enabled: true,
             }
         });
@@ -156,6 +170,8 @@ impl ReachTrial<'_> {
 struct Playback<'a> {
     trial: &'a ReachTrial<'a>,
     control: ClosedLoop,
+    headset: Headset,
+    belief: BeliefWatch,
     /// The truth at every control period, and the poses that the headset sends, in the recording's time.
     truth: std::iter::Peekable<crate::trace::Resampled<'a>>,
     poses: std::iter::Peekable<crate::trace::Resampled<'a>>,
@@ -165,23 +181,33 @@ struct Playback<'a> {
 }
 
 impl<'a> Playback<'a> {
-    fn new(trial: &'a ReachTrial<'a>, control: ClosedLoop, begins: Time, reach: Time) -> Option<Self> {
+    fn new(
+        trial: &'a ReachTrial<'a>,
+        control: ClosedLoop,
+        belief: BeliefWatch,
+        begins: Time,
+        reach: Time,
+    ) -> Option<Self> {
         let mut truth = trial.recording.resampled_between(1.0 / PERIOD.secs(), begins, reach).peekable();
         let poses = trial.recording.resampled_between(trial.pose_hz, begins, reach).peekable();
         let first = *truth.peek()?;
         let head = TrueHead { person: VISITOR, pose: trial.recording.room_from_trace().pose(&first.pose) };
-        Some(Self { trial, control, truth, poses, begins, reach, head })
+        let headset = Headset::new();
+        Some(Self { trial, control, headset, belief, truth, poses, begins, reach, head })
     }
 
-    /// The person stands at the first pose until the engine knows them.
-    fn warm_up(&mut self) {
-        self.control.observe(Observation::PersonEntered(VISITOR));
+    /// Armed with nobody there for as long as a soft start lasts, as in a session; then the person comes in.
+    fn warm_up(&mut self) -> Result<(), Mode> {
+        // The engine hears of the machine first.
+        self.control.step(&[]);
+        self.control.arm()?;
         let until = self.control.now() + WARM_UP;
         while self.control.now() < until {
-            self.control.send(VISITOR, seen(self.control.now(), &self.head));
-            self.control.step(&[self.head]);
+            self.control.step(&[]);
         }
+        self.control.observe(Observation::PersonEntered(VISITOR));
         self.control.drain_events();
+        Ok(())
     }
 
     fn play(mut self, place: Floor) -> TrialOutcome {
@@ -193,19 +219,26 @@ impl<'a> Playback<'a> {
         let mut arrived_at: Option<Time> = None;
         let mut fast_at: Option<Time> = None;
         let mut last = (f64::INFINITY, started);
+        let mut peaks = Peaks::default();
+        let mut proxy_way = (0.0, 0.0);
         while in_recording(self.control.now()) <= self.reach {
             let now = self.control.now();
             let due = |sample: &HeadSample| sample.at <= in_recording(now);
             while let Some(sample) = self.poses.next_if(due) {
                 let pose = room_from_trace.pose(&sample.pose);
-                let head = TrueHead { person: VISITOR, pose };
-                self.control.send(VISITOR, seen(started + (sample.at - self.begins), &head));
+                let taken_at = started + (sample.at - self.begins);
+                self.control.send(VISITOR, self.headset.seen(taken_at, &pose));
             }
             // In a gap of the recording the head stays where it was last seen.
             while let Some(sample) = self.truth.next_if(due) {
                 self.head.pose = room_from_trace.pose(&sample.pose);
             }
-            let truth = self.control.step(&[self.head]).truth;
+            let stepped = self.control.step(&[self.head]);
+            let truth = stepped.truth;
+            self.belief.look(in_recording(now), self.control.engine().belief());
+            peaks.see(&stepped.command);
+            proxy_way.0 += self.control.engine().proxy().distance_m(truth.position);
+            proxy_way.1 += 1.0;
             column_travel_m += before.map_or(0.0, |before| before.distance_m(truth.position));
             before = Some(truth.position);
             if truth.velocity.norm() >= AT_REST_MPS {
@@ -233,6 +266,9 @@ impl<'a> Playback<'a> {
             in_place_before_reach_secs: arrived_at.map_or(0.0, |at| (ended - at).secs()),
             stops: events.iter().filter(|event| is_stop(&event.kind)).count() as u32,
             column_travel_m,
+            peaks: peaks.greatest,
+            proxy_distance_m: proxy_way.0 / f64::max(proxy_way.1, 1.0),
+            belief: self.belief.told(),
             simulated_secs: (ended - started).secs(),
             true_verdict: self.control.true_verdict().clone(),
             commanded_verdict: self.control.commanded_verdict().clone(),
@@ -240,16 +276,34 @@ impl<'a> Playback<'a> {
     }
 }
 
-fn seen(taken_at: Time, head: &TrueHead) -> PoseSample {
-    PoseSample { taken_at, pose: head.pose, tracked: true, worn: true }
+/// Greatest commanded speed, acceleration and jerk of an axis.
+#[derive(Default)]
+struct Peaks {
+    greatest: [f64; 3],
+    before: Option<Planar>,
+}
+
+impl Peaks {
+    fn see(&mut self, command: &Vetted) {
+        let Action::Track(setpoint) = command.action() else {
+            self.before = None;
+            return;
+        };
+        let jerk = self.before.map_or(Planar::ZERO, |a| (setpoint.acceleration - a) * (1.0 / PERIOD.secs()));
+        self.before = Some(setpoint.acceleration);
+        for (greatest, now) in self.greatest.iter_mut().zip([setpoint.velocity, setpoint.acceleration, jerk])
+        {
+            *greatest = greatest.max(now.x.abs()).max(now.y.abs());
+        }
+    }
 }
 
 const VISITOR: PersonId = PersonId(1);
 const PERIOD: Span = Span::from_millis(4);
 /// The replay begins this long before the scene is hidden.
 const BEFORE_PREVIEW_END: Span = Span::from_millis(2_000);
-/// Before it the person stands still until poses arrive.
-const WARM_UP: Span = Span::from_millis(300);
+/// Longer than a soft start lasts at the paper's speed.
+const WARM_UP: Span = Span::from_millis(2_000);
 /// How near the column's centre must be, m.
 const WITHIN_M: f64 = 0.1;
 /// How slow, m/s.
@@ -296,6 +350,7 @@ mod tests {
         let trial = ReachTrial {
             recording,
             targets,
+            priors: None,
             rule: RuleName::Paper,
             v_h_mps: 1.6,
             pose_hz: 75.0,
@@ -334,6 +389,7 @@ mod tests {
             let trial = ReachTrial {
                 recording,
                 targets,
+                priors: None,
                 rule: RuleName::Paper,
                 v_h_mps: 1.6,
                 pose_hz: 75.0,

@@ -200,6 +200,7 @@ fn target(field: &Field<'_>) -> Result<Target, BadField> {
         label: fields.optional("label").map(|label| label.text()).transpose()?.unwrap_or_default(),
         position: Point::new(number("x")?, number("y")?, number("z")?),
         radius_m,
+        view_deg: fields.optional("view_deg").map(|view| view.number()).transpose()?,
     })
 }
 

@@ -1,0 +1,204 @@
+//! One row of the table: what became of all trials of one rule, task, number of objects and prior.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::replay::{LOOKS_BEFORE_REACH_SECS, TrialOutcome};
+
+/// The whole table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Evaluation {
+    /// Of this form.
+    pub schema: &'static str,
+    /// The program's.
+    pub version: &'static str,
+    /// What the machine may do, and what the separation rule asks: SI units in the names.
+    pub limits: BTreeMap<&'static str, f64>,
+    /// Time that it took, s.
+    pub wall_secs: f64,
+    /// Virtual time replayed, s.
+    pub simulated_secs: f64,
+    /// The rows.
+    pub rows: Vec<Row>,
+}
+
+/// One row.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// File of the recordings, without its endings.
+    pub file: String,
+    /// What the people were asked to do.
+    pub task: String,
+    /// The intention rule.
+    pub rule: &'static str,
+    /// How the column is moved.
+    pub motion: &'static str,
+    /// The server uses this when nothing is configured.
+    pub default: bool,
+    /// What the scenario said.
+    pub prior: &'static str,
+    /// How distractors were drawn.
+    pub draw: &'static str,
+    /// Objects shown; 0 for all.
+    pub objects: usize,
+    /// Whether the separation rule was kept.
+    pub separation: &'static str,
+    /// v_h of the separation rule, m/s.
+    pub v_h_mps: f64,
+    /// Trials replayed.
+    pub trials: usize,
+    /// Of which the column was in place, at rest.
+    pub successes: usize,
+    /// Their share.
+    pub success: f64,
+    /// Share within 10 cm, whatever the speed.
+    pub within_10cm: f64,
+    /// Wilson's interval of `success`.
+    pub ci95: [f64; 2],
+    /// Mean distance of the successes at the reach, m.
+    pub distance_at_reach_m: f64,
+    /// Mean time that the column had been in place at the reach, of the successes, s.
+    pub in_place_before_reach_s: f64,
+    /// Mean time from the first lasting belief in the goal to the reach, of those who had one, s.
+    pub detection_s: f64,
+    /// Share of trials that ended with the belief in the goal.
+    pub detection_accuracy: f64,
+    /// Least distance from a head axis to the footprint while the column moved, m; null if it never did.
+    pub least_separation_moving_m: Option<f64>,
+    /// Violations of separation, travel and limits, of the commanded and of the true motion.
+    pub violations: u64,
+    /// Stops.
+    pub stops: u64,
+    /// Mean way of the column, m.
+    pub column_travel_m: f64,
+    /// Greatest commanded speed of an axis, m/s.
+    pub peak_speed_mps: f64,
+    /// Greatest commanded acceleration of an axis, m/s2.
+    pub peak_acceleration_mps2: f64,
+    /// Greatest commanded jerk of an axis, m/s3.
+    pub peak_jerk_mps3: f64,
+    /// Mean distance between column and proxy, m.
+    pub proxy_distance_m: f64,
+    /// Share with the goal most probable, by seconds before the reach.
+    pub top1: BTreeMap<String, f64>,
+    /// The same among the targets of its wall; empty where there are no walls.
+    pub top1_wall: BTreeMap<String, f64>,
+    /// Mean negative logarithm of the goal's probability, by seconds before the reach.
+    pub log_loss: BTreeMap<String, f64>,
+}
+
+/// What a row is about.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RowKey {
+    pub file: String,
+    pub task: String,
+    pub rule: &'static str,
+    pub default: bool,
+    pub prior: &'static str,
+    pub draw: &'static str,
+    pub objects: usize,
+    pub v_h_mps: f64,
+}
+
+impl Row {
+    /// Sum trials up, in their order.
+    pub(super) fn of(key: RowKey, outcomes: &[&TrialOutcome]) -> Self {
+        let trials = outcomes.len();
+        let good: Vec<&TrialOutcome> = outcomes.iter().copied().filter(|o| o.success).collect();
+        let share = |count: usize| if trials > 0 { count as f64 / trials as f64 } else { 0.0 };
+        let greatest = |i: usize| outcomes.iter().map(|o| o.peaks[i]).fold(0.0, f64::max);
+        let detections: Vec<f64> =
+            outcomes.iter().filter_map(|o| o.belief.detected_before_reach_secs).collect();
+        let [mut top1, mut top1_wall, mut log_loss] = [(); 3].map(|()| BTreeMap::new());
+        for (look, before_secs) in LOOKS_BEFORE_REACH_SECS.iter().enumerate() {
+            let name = || format!("{before_secs:.1}");
+            let seen: Vec<_> = outcomes.iter().filter_map(|o| o.belief.at[look]).collect();
+            let walls: Vec<bool> = seen.iter().filter_map(|b| b.goal_is_best_of_wall).collect();
+            let as_share = |yes: bool| if yes { 1.0 } else { 0.0 };
+            if !seen.is_empty() {
+                top1.insert(name(), mean(seen.iter().map(|b| as_share(b.goal_is_best))));
+                let loss = |b: f64| -b.max(LEAST_PROBABILITY).ln();
+                log_loss.insert(name(), mean(seen.iter().map(|b| loss(b.goal_probability))));
+            }
+            if !walls.is_empty() {
+                top1_wall.insert(name(), mean(walls.iter().map(|best| as_share(*best))));
+            }
+        }
+        Self {
+            file: key.file,
+            task: key.task,
+            rule: key.rule,
+            motion: "proxy",
+            default: key.default,
+            prior: key.prior,
+            draw: key.draw,
+            objects: key.objects,
+            separation: "on",
+            v_h_mps: key.v_h_mps,
+            trials,
+            successes: good.len(),
+            success: share(good.len()),
+            within_10cm: share(outcomes.iter().filter(|o| o.within_10cm).count()),
+            ci95: wilson(good.len(), trials),
+            distance_at_reach_m: mean(good.iter().map(|o| o.distance_at_reach_m)),
+            in_place_before_reach_s: mean(good.iter().map(|o| o.in_place_before_reach_secs)),
+            detection_s: mean(detections.iter().copied()),
+            detection_accuracy: share(detections.len()),
+            least_separation_moving_m: outcomes
+                .iter()
+                .filter_map(|o| o.true_verdict.least_separation_moving_m)
+                .reduce(f64::min),
+            violations: outcomes
+                .iter()
+                .map(|o| o.true_verdict.violations() + o.commanded_verdict.violations())
+                .sum(),
+            stops: outcomes.iter().map(|o| u64::from(o.stops)).sum(),
+            column_travel_m: mean(outcomes.iter().map(|o| o.column_travel_m)),
+            peak_speed_mps: greatest(0),
+            peak_acceleration_mps2: greatest(1),
+            peak_jerk_mps3: greatest(2),
+            proxy_distance_m: mean(outcomes.iter().map(|o| o.proxy_distance_m)),
+            top1,
+            top1_wall,
+            log_loss,
+        }
+    }
+}
+
+/// 0 of nothing.
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// Wilson's score interval at 95 % (Wilson 1927).
+pub(super) fn wilson(successes: usize, trials: usize) -> [f64; 2] {
+    if trials == 0 {
+        return [0.0, 1.0];
+    }
+    let (n, p) = (trials as f64, successes as f64 / trials as f64);
+    let z2 = Z_95 * Z_95;
+    let middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
+    let half = Z_95 / (1.0 + z2 / n) * (p * (1.0 - p) / n + z2 / (4.0 * n * n)).sqrt();
+    [(middle - half).max(0.0), (middle + half).min(1.0)]
+}
+
+/// The 97.5th percentile of the normal distribution.
+const Z_95: f64 = 1.959_963_985;
+/// A rule that gives the goal no chance at all loses this much, not everything.
+const LEAST_PROBABILITY: f64 = 1e-3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wilsons_interval_is_the_published_one() {
+        // 81 of 263: 0.2553 to 0.3662 (Newcombe 1998, table I, method 3).
+        let [low, high] = wilson(81, 263);
+        assert!((low - 0.2553).abs() < 1e-4 && (high - 0.3662).abs() < 1e-4, "{low} {high}");
+        assert_eq!(wilson(0, 0), [0.0, 1.0]);
+        assert!(wilson(10, 10)[1] <= 1.0 && wilson(10, 10)[0] > 0.7);
+    }
+}
