@@ -5,6 +5,7 @@
 import type { IncomingMessage, Server, ServerResponse } from "node:http";
 import { WebSocketServer, type WebSocket } from "ws";
 import type { FromDashboard, MachineRequest, PriorChange, SceneDocument, SceneError, ToDashboard } from "../src/api/types";
+import { MOCK_CONFIG } from "./config.ts";
 import { MockMachine, type MockOptions } from "./machine.ts";
 import { LINK_THRESHOLDS, MACHINE_SHAPE, MOCK_SCENE } from "./scene.ts";
 
@@ -114,6 +115,8 @@ export class MockServer {
     else if (key === "GET priors") reply(response, 200, this.#changes);
     else if (key === "GET sessions") {
       reply(response, 200, [{ id: 1, started_at: STARTED_AT, ended_at: null, how: null, scene: MOCK_SCENE.name }]);
+    } else if (key === "GET config") {
+      reply(response, 200, MOCK_CONFIG);
     } else if (key === "GET events") {
       reply(response, 200, this.machine.events.slice(0, Number(url.searchParams.get("limit") ?? "50")));
     } else problem(response, 404, "Not found", `nothing is at ${url.pathname}`);

@@ -26,8 +26,8 @@ export class Dashboard {
     });
   }
 
-  /** Opens the page, until the test ends, and waits until it is live. */
-  static async open(url: string, scheme: "dark" | "light" = "dark"): Promise<Dashboard> {
+  /** Opens the page, until the test ends, and waits until it is live. The tour comes at a first visit alone. */
+  static async open(url: string, scheme: "dark" | "light" = "dark", firstVisit = false): Promise<Dashboard> {
     const browser = await chromium.launch({
       executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
       args: [
@@ -43,6 +43,7 @@ export class Dashboard {
     onTestFinished(() => browser.close());
     const page = await browser.newPage({ viewport: { width: 1366, height: 768 }, colorScheme: scheme });
     const dashboard = new Dashboard(page);
+    if (!firstVisit) await page.addInitScript(tourWasSeen);
     await page.goto(url);
     await dashboard.isLive();
     return dashboard;
@@ -105,6 +106,13 @@ export class Dashboard {
     if (message.type === "snapshot") this.snapshots.push(message);
     if (message.type === "event") this.events.push(message);
   }
+}
+
+/** In the page: whoever sits there has been shown around. */
+function tourWasSeen(): void {
+  const key = `covr.preferences.${localStorage.getItem("covr.author") ?? "game master"}`;
+  const kept = JSON.parse(localStorage.getItem(key) ?? "{}") as object;
+  localStorage.setItem(key, JSON.stringify({ ...kept, tourDone: true }));
 }
 
 /** The column's measured speed, m/s. */

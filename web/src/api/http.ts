@@ -2,7 +2,7 @@
  * The server over HTTP: everything that the socket does not carry, and the stop's second lane. Each call has a
  * deadline; a refusal is a `Problem` with the server's own words.
  */
-import type { PriorChange, SceneDocument, SceneError, SceneSummary, SessionSummary, WireEvent } from "./types";
+import type { ConfigInForce, PriorChange, SceneDocument, SceneError, SceneSummary, SessionSummary, WireEvent } from "./types";
 
 /** A refusal, as RFC 9457 has it. */
 export class Problem extends Error {
@@ -82,6 +82,11 @@ export async function listSessions(): Promise<readonly SessionSummary[]> {
 /** `GET /api/v1/events`, newest first. */
 export async function listEvents(limit: number): Promise<readonly WireEvent[]> {
   return (await call("GET", `/api/v1/events?limit=${limit}`)) as readonly WireEvent[];
+}
+
+/** `GET /api/v1/config`. */
+export async function readConfig(): Promise<ConfigInForce> {
+  return (await call("GET", "/api/v1/config")) as ConfigInForce;
 }
 
 async function call(method: string, path: string, body?: { text: string; author: string }): Promise<unknown> {

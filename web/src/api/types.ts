@@ -6,6 +6,8 @@ export type {
   Activity,
   Client,
   Column,
+  ConfigInForce,
+  ConfigKey,
   ControlLoop,
   Event as WireEvent,
   FromDashboard,

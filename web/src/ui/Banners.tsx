@@ -4,7 +4,7 @@ import { words } from "../i18n";
 import type { Live } from "../live/live";
 import { modeWords, span } from "../lib/format";
 
-/** The bars under the header. */
+/** The bars under the header. A stop since the very start is one that the last run left latched. */
 export function Banners(props: { readonly live: Live }): JSX.Element {
   const age = createMemo(() => {
     const freshness = props.live.freshness();
@@ -51,7 +51,7 @@ export function Banners(props: { readonly live: Live }): JSX.Element {
               <span data-testid="stop-clears-when" lang="en">
                 {stop().clears_when}
               </span>{" "}
-              <a href={`#/help/stop/${stop().rule}`} data-testid="stop-help">
+              <a href={`#/help/stop/${stop().since_micros === 0 ? "restart" : stop().rule}`} data-testid="stop-help">
                 {words().shell.banners.whatToDo}
               </a>
             </span>

@@ -32,9 +32,9 @@ export function ShortcutsDialog(props: {
         <section>
           <h3>{words().shell.shortcuts.groups.stop}</h3>
           <dl>
-            <Row keys="Esc" does={words().shell.shortcuts.escStops} />
+            <Row keys={words().shell.stop.escape} does={words().shell.shortcuts.escStops} />
             <Row keys={words().shell.stop.space} does={words().shell.shortcuts.spaceStops} />
-            <Row keys="Enter" does={words().shell.shortcuts.enterPresses} />
+            <Row keys={words().shell.stop.enter} does={words().shell.shortcuts.enterPresses} />
             <Row keys="Tab" does={words().shell.shortcuts.tabMoves} />
           </dl>
         </section>

@@ -26,7 +26,7 @@ export function StopButton(props: { readonly press: () => void }): JSX.Element {
   return (
     <div class="stop-corner">
       <p class="stop-note" id="stop-note">
-        <b>{words().shell.stop.keys}</b> <kbd>Esc</kbd> {words().shell.stop.always} <kbd>{words().shell.stop.space}</kbd>{" "}
+        <b>{words().shell.stop.keys}</b> <kbd>{words().shell.stop.escape}</kbd> {words().shell.stop.always} <kbd>{words().shell.stop.space}</kbd>{" "}
         {words().shell.stop.unlessTyping} <br />
         {words().shell.stop.notTheEmergencyStop}
       </p>

@@ -13,6 +13,8 @@ import { KEYS_OF_THE_LIST, useShellShortcuts } from "../ui/keys";
 import { ShortcutsDialog } from "../ui/ShortcutsDialog";
 import { StopReport } from "../ui/StopReport";
 import { Strip } from "../ui/Strip";
+import { Tour } from "../ui/Tour";
+import { HelpView } from "./HelpView";
 import { LiveView } from "./LiveView";
 import { createRoute } from "./route";
 import { ScenesView } from "./ScenesView";
@@ -29,6 +31,8 @@ export function App(): JSX.Element {
   const appearance = createAppearance(store);
   const upload = createUpload(author);
   const [listed, setListed] = createSignal(false);
+  // At the first visit of a user, and when the help is asked for it.
+  const [touring, setTouring] = createSignal(store.preferences().tourDone !== true);
   const [said, say] = createSignal("");
   const dragging = createFileDrop((file) => {
     location.hash = "#/scenes";
@@ -46,6 +50,10 @@ export function App(): JSX.Element {
     closeHelp: () => setListed(false),
     say,
   });
+  const showTour = (): void => {
+    location.hash = "#/live";
+    setTouring(true);
+  };
   const usesShortcuts = (): boolean => store.preferences().shortcuts !== false;
   listenForShortcuts(usesShortcuts, () => (listed() ? KEYS_OF_THE_LIST : null));
   createEffect(() => {
@@ -90,6 +98,9 @@ export function App(): JSX.Element {
               showShortcuts={() => setListed(true)}
             />
           </Match>
+          <Match when={route().view === "help"}>
+            <HelpView live={live} at={route().rest} showTour={showTour} showShortcuts={() => setListed(true)} />
+          </Match>
         </Switch>
       </main>
       <Strip live={live} />
@@ -98,6 +109,14 @@ export function App(): JSX.Element {
           enabled={usesShortcuts()}
           enable={(shortcuts) => { store.change({ shortcuts }); }}
           close={() => setListed(false)}
+        />
+      </Show>
+      <Show when={touring() && route().view === "live" && !listed()}>
+        <Tour
+          close={() => {
+            setTouring(false);
+            store.change({ tourDone: true });
+          }}
         />
       </Show>
       <Show when={dragging()}>

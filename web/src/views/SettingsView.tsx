@@ -3,6 +3,7 @@ import { For, Show, type JSX } from "solid-js";
 import { LANGUAGES, words } from "../i18n";
 import type { PreferenceStore } from "../lib/preferences";
 import type { Live } from "../live/live";
+import { Configuration } from "../ui/Configuration";
 import { version as pageVersion } from "../../package.json";
 
 /** The view. */
@@ -17,6 +18,7 @@ export function SettingsView(props: {
     <div class="sheet">
       <h1>{words().settings.title}</h1>
       <Yours {...props} />
+      <Configuration />
       <Versions live={props.live} />
     </div>
   );

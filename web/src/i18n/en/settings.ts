@@ -10,8 +10,6 @@ export const settings = {
     shortcuts: "Shortcuts by a single key",
     shortcutsMeans: "Turn them off if you dictate to your computer. Esc and Space stop the machine in any case.",
     showShortcuts: "Show all",
-    tour: "Tour",
-    startTour: "Show the tour again",
   },
   versions: {
     title: "Versions and documents",
@@ -47,5 +45,24 @@ export const settings = {
     differs: "differs from the default",
     notRead: "The configuration could not be read:",
     again: "Try again",
+  },
+  help: { notRead: "The help could not be loaded. Is the server running?" },
+  tour: {
+    title: "Tour",
+    step: (step: number, of: number) => `${step} of ${of}`,
+    back: "Back",
+    next: "Next",
+    skip: "Skip the tour",
+    done: "Done",
+    again: "You find the tour again under Help.",
+    steps: {
+      mode: ["The mode", "What the machine is about, in big words. Coloured words mean motion or a stop; everything fades when the values are no longer live."],
+      stop: ["The stop", "Always here, always enabled. Esc presses it everywhere, Space unless you type. It is a software stop: the wired stop chain removes power, this does not."],
+      machine: ["Home and arm", "Look at the arena, then Home, then Arm. A button that cannot be pressed now says why."],
+      picture: ["The room from above", "Column, persons and the room that the column keeps from each, objects, and where the column is wanted."],
+      rules: ["The safety rules", "Every rule with its reason. The id leads to plain-language help; a stop has a link of its own."],
+      priors: ["Priors", "How likely the scenario makes each object. A change moves the column, and is recorded under your name."],
+      pages: ["Everything else", "Scenes, sessions, settings and help. Type ? for every key."],
+    },
   },
 } as const;

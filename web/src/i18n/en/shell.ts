@@ -23,7 +23,9 @@ export const shell = {
     person: (id: number) => `person ${id}`,
   },
   stop: {
+    escape: "Esc",
     space: "Space",
+    enter: "Enter",
     keys: "Keys:",
     always: "always,",
     unlessTyping: "unless typing.",

@@ -10,8 +10,6 @@ export const settings = {
     shortcuts: "Raccourcis à une seule touche",
     shortcutsMeans: "Désactivez-les si vous dictez à votre ordinateur. Échap et Espace arrêtent la machine dans tous les cas.",
     showShortcuts: "Tout afficher",
-    tour: "Visite guidée",
-    startTour: "Revoir la visite",
   },
   versions: {
     title: "Versions et documents",
@@ -47,5 +45,24 @@ export const settings = {
     differs: "diffère du défaut",
     notRead: "La configuration n’a pas pu être lue :",
     again: "Réessayer",
+  },
+  help: { notRead: "L’aide n’a pas pu être chargée. Le serveur fonctionne-t-il ?" },
+  tour: {
+    title: "Visite guidée",
+    step: (step: number, of: number) => `${step} sur ${of}`,
+    back: "Précédent",
+    next: "Suivant",
+    skip: "Passer la visite",
+    done: "Terminer",
+    again: "Vous retrouverez la visite dans l’aide.",
+    steps: {
+      mode: ["Le mode", "Ce que fait la machine, en grandes lettres. Un mot coloré signale un mouvement ou un arrêt ; tout pâlit quand les valeurs ne sont plus en direct."],
+      stop: ["L’arrêt", "Toujours là, toujours actif. Échap le commande partout, Espace hors saisie de texte. C’est un arrêt logiciel : la chaîne câblée coupe l’alimentation, pas lui."],
+      machine: ["Origine et armement", "Regardez l’arène, puis Origine, puis Armer. Un bouton indisponible dit pourquoi."],
+      picture: ["La pièce vue de dessus", "La colonne, les personnes et la distance gardée avec chacune, les objets, et l’endroit où la colonne est attendue."],
+      rules: ["Les règles de sécurité", "Chaque règle avec sa raison. Son numéro mène à une aide en langage clair ; un arrêt a son propre lien."],
+      priors: ["Les a priori", "La probabilité que le scénario donne à chaque objet. Un changement déplace la colonne ; il est enregistré sous votre nom."],
+      pages: ["Tout le reste", "Scènes, séances, réglages et aide. Tapez ? pour voir toutes les touches."],
+    },
   },
 } as const;

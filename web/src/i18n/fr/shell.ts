@@ -23,7 +23,9 @@ export const shell = {
     person: (id: number) => `personne ${id}`,
   },
   stop: {
+    escape: "Échap",
     space: "Espace",
+    enter: "Entrée",
     keys: "Touches :",
     always: "toujours,",
     unlessTyping: "hors saisie de texte.",
