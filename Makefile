@@ -13,7 +13,7 @@ export COVR_BIN ?= $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/debug/covr
 # Where `make run` listens.
 BIND ?= 127.0.0.1:7878
 
-.PHONY: help run test setup build fmt check-format clippy test-rust test-web test-e2e
+.PHONY: help run test bench setup build fmt check-format clippy test-rust test-web test-e2e
 
 help: ## This list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -22,6 +22,10 @@ run: build ## Start the server (simulated gantry, demo scene) with a visitor; th
 	BIND=$(BIND) deploy/demo
 
 test: setup check-format clippy test-rust test-web test-e2e ## Everything: format, lint, types, unit, closed-loop, API, store and browser tests
+
+bench: ## Every figure that the server promises, into server/BENCHMARKS.md; BENCH="--only stop" or --quick for less
+	cargo build --locked --release --package covr-server
+	cargo bench --locked --profile release --package covr-tests --bench figures -- --out $(CURDIR)/server/BENCHMARKS.md $(BENCH)
 
 setup: ## Install what the tests need and this machine lacks
 	tests/setup

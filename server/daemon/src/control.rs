@@ -6,7 +6,7 @@
 
 mod inbox;
 mod lateness;
-mod real_time;
+pub mod real_time;
 mod stop_lane;
 #[cfg(test)]
 mod tests;

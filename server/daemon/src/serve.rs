@@ -52,6 +52,18 @@ pub enum Reach {
 impl Server {
     /// Start: store, control thread, sockets. The machine starts disarmed, or latched if the last run ended so.
     pub async fn start(config: impl Into<Loaded>, reach: Reach) -> anyhow::Result<Self> {
+        let loaded = config.into();
+        let gantry = machine(&loaded.config)?;
+        Self::start_with(loaded, reach, gantry).await
+    }
+
+    /// The same with a machine of the caller's: for measurements and tests. Its travel and limits must be the
+    /// configuration's.
+    pub async fn start_with(
+        config: impl Into<Loaded>,
+        reach: Reach,
+        gantry: Box<dyn Gantry>,
+    ) -> anyhow::Result<Self> {
         let Loaded { config, origins } = config.into();
         check_reach(&config, reach)?;
         let prometheus = meters::install()?;
@@ -94,7 +106,7 @@ impl Server {
         };
         let control = Control::start(Setup {
             engine: Engine::new(engine_config, scene),
-            gantry: machine(&config)?,
+            gantry,
             clock,
             period,
             publish_every: Duration::from_secs_f64(1.0 / config.control.publish_hz),
