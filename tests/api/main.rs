@@ -9,6 +9,7 @@ mod dashboards;
 mod guards;
 mod links;
 mod machine;
+mod monitoring;
 mod person;
 mod priors;
 mod record;

@@ -28,7 +28,7 @@ pub struct Tick {
     pub read: Instant,
     /// When the command had been written.
     pub written: Instant,
-    /// The command brakes.
+    /// The command brakes, or lets the drive go.
     pub brakes: bool,
 }
 
@@ -131,8 +131,8 @@ impl Gantry for Noting {
 
     fn write(&mut self, now: Time, command: &Vetted) -> Result<(), NotTaken> {
         let taken = self.machine.write(now, command);
-        let tick =
-            Tick { now, read: self.read, written: Instant::now(), brakes: command.action() == Action::Hold };
+        let brakes = matches!(command.action(), Action::Hold | Action::Release);
+        let tick = Tick { now, read: self.read, written: Instant::now(), brakes };
         // At the end nobody looks any more.
         let _ = self.ticks.send(tick);
         taken

@@ -1,5 +1,6 @@
 //! From the last byte of `POST /api/v1/stop` to the first braking command. The machine is the ideal one, so that each
 //! stop is reset, homed and armed again within a few control periods; socket, handler, lane and loop are the real ones.
+//! The column rests, so the drive is let go instead of braked: either counts.
 
 use std::time::{Duration, Instant};
 

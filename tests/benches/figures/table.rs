@@ -83,8 +83,9 @@ impl Machine {
 /// The whole table as Markdown.
 pub fn markdown(rows: &[Row], machine: &Machine, effort: Effort) -> String {
     let Machine { cores, model, kernel, rustc } = machine;
+    let profile = if cfg!(debug_assertions) { "not optimised" } else { "release profile" };
     let mut text = format!(
-        "# Benchmarks\n\nWritten by `make bench`. {cores} cores of {model}, Linux {kernel}, {rustc}, release profile.\n"
+        "# Benchmarks\n\nWritten by `make bench`. {cores} cores of {model}, Linux {kernel}, {rustc}, {profile}.\n"
     );
     if effort == Effort::Quick {
         text.push_str("\n**A quick run: too few samples to hold anything against.**\n");
