@@ -4,6 +4,7 @@
 //! the mode says what the machine does; in `following` motion proposes and safety disposes.
 
 mod following;
+pub mod outlook;
 mod requests;
 mod view;
 
@@ -145,9 +146,7 @@ impl Engine {
         self.supervise(now);
         self.progress_homing(now);
         let config = &self.config;
-        let wish = self.following.weigh(&self.persons, &self.scene, &self.priors, now, &self.parameters);
-        // Somebody has come in and nobody knows where: hold until the first pose.
-        let wish = wish.filter(|_| !self.persons.iter().any(Person::is_unseen));
+        let wish = self.following.wanted(&self.persons, &self.scene, &self.priors, now, &self.parameters);
         let command = match self.mode {
             Mode::Disarmed | Mode::LatchedStop | Mode::Faulted => self.stop_and_release(now),
             Mode::Homing if self.may_home() => Vetted::home(now),

@@ -33,9 +33,19 @@ pub struct Belief {
 }
 
 /// An intention rule.
-pub trait Rule: std::fmt::Debug + Send {
-    /// Weigh the objects of one visitor; `belief` is reused from step to step.
+pub trait Rule: std::fmt::Debug + Send + Sync {
+    /// Weigh the objects of one visitor; `belief` is reused from pose to pose. To weigh the same sights again changes
+    /// neither the rule nor the belief: time passes for people, who move, and not for rules.
     fn weigh(&mut self, sights: &[Sight], belief: &mut Belief);
+
+    /// A copy with what it remembers.
+    fn boxed(&self) -> Box<dyn Rule>;
+}
+
+impl Clone for Box<dyn Rule> {
+    fn clone(&self) -> Self {
+        self.as_ref().boxed()
+    }
 }
 
 /// The rules that can be chosen, by name.
@@ -111,6 +121,11 @@ pub fn command_position(scene: &Scene, belief: &Belief) -> Option<Floor> {
 }
 
 impl Belief {
+    /// The sum of the weights, which a probability is a share of.
+    pub fn total(&self) -> f64 {
+        self.weights.iter().sum()
+    }
+
     /// Give every object the share `share(i)`, scaled to sum to 1.
     fn share_by(&mut self, count: usize, share: impl Fn(usize) -> f64) {
         self.shares.clear();
@@ -125,6 +140,37 @@ impl Belief {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    fn sights(count: usize) -> impl Strategy<Value = Vec<Sight>> {
+        let sight = (0.0..3.0f64, 0.0..1.2f64, 0.0..1.0f64, prop::bool::weighted(0.9));
+        let sight = sight.prop_map(|(distance_m, angle_rad, prior, enabled)| Sight {
+            distance_m,
+            angle_rad,
+            prior,
+            enabled,
+        });
+        prop::collection::vec(sight, count)
+    }
+
+    proptest! {
+        #[test]
+        fn a_rule_that_sees_the_same_again_finds_the_same(
+            seen in (1..12usize).prop_flat_map(|count| prop::collection::vec(sights(count), 1..6)),
+        ) {
+            for name in RuleName::ALL {
+                let (mut once, mut often) = (name.rule(), name.rule());
+                let (mut belief, mut of_often) = (Belief::default(), Belief::default());
+                for sights in &seen {
+                    once.weigh(sights, &mut belief);
+                    for _ in 0..3 {
+                        often.weigh(sights, &mut of_often);
+                    }
+                    prop_assert_eq!(&belief, &of_often, "{}", name.name());
+                }
+            }
+        }
+    }
 
     #[test]
     fn every_rule_has_a_name_of_its_own_and_answers_to_it() {

@@ -19,4 +19,5 @@ pub mod scene;
 pub mod snapshot;
 pub mod time;
 
+pub use engine::outlook::{Outlook, Preview};
 pub use engine::{Answer, Engine, EngineConfig, Outcome, Request};

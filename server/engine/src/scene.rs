@@ -87,7 +87,14 @@ impl Scene {
     /// From a head to the nearest surface of any enabled object, m; infinite without one.
     pub fn nearest_enabled_object_m(&self, head: &Point<Room>) -> f64 {
         let enabled = self.objects.iter().zip(&self.spec.objects).filter(|(_, spec)| spec.enabled);
-        enabled.map(|(object, _)| object.distance_m(head)).fold(f64::INFINITY, f64::min)
+        enabled.fold(f64::INFINITY, |nearest, (object, _)| {
+            // Far objects are not asked for their surface: it is no nearer than the ball about it.
+            if object.surface.at_least_m(head) > nearest {
+                nearest
+            } else {
+                nearest.min(object.distance_m(head))
+            }
+        })
     }
 }
 
@@ -277,6 +284,21 @@ mod tests {
         spec.objects[0].prop = Some(0);
         let scene = Scene::build(spec).unwrap();
         assert!(scene.objects()[0].column_place().distance_m(Floor::new(0.6, 2.1)) < 1e-12);
+    }
+
+    #[test]
+    fn the_nearest_enabled_object_is_found_among_all() {
+        let balls = (0..40).map(|i| {
+            let (x, y) = (f64::from(i * 37 % 40) * 0.1, f64::from(i * 23 % 40) * 0.1);
+            ObjectSpec { enabled: i % 5 != 0, ..ball(&format!("{i}"), x, y) }
+        });
+        let scene = Scene::build(SceneSpec::open(arena(), balls.collect())).unwrap();
+        for k in 0..400 {
+            let head = Point::new(f64::from(k % 20) * 0.2, f64::from(k / 20) * 0.2, 1.6);
+            let all = scene.objects().iter().zip(&scene.spec().objects).filter(|(_, spec)| spec.enabled);
+            let nearest = all.map(|(object, _)| object.distance_m(&head)).fold(f64::INFINITY, f64::min);
+            assert_eq!(scene.nearest_enabled_object_m(&head), nearest);
+        }
     }
 
     #[test]

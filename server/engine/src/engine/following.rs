@@ -26,19 +26,23 @@ pub struct Wish {
 }
 
 /// One visitor with a rule of their own.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Visitor {
     person: PersonId,
     rule: Box<dyn Rule>,
+    sights: Vec<Sight>,
     belief: Belief,
+    /// When the pose was taken that the belief is about; a rule that sees the same again finds the same.
+    believed_at: Option<Time>,
 }
 
 /// Intention of every visitor, and the proxy.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Following {
     rule: RuleName,
     visitors: Vec<Visitor>,
-    sights: Vec<Sight>,
+    /// The priors that the beliefs are about.
+    believed_priors: Vec<f64>,
     serves: Option<PersonId>,
     wish: Option<Wish>,
     proxy: Proxy,
@@ -57,7 +61,7 @@ impl Following {
         Self {
             rule,
             visitors: Vec::new(),
-            sights: Vec::new(),
+            believed_priors: Vec::new(),
             serves: None,
             wish: None,
             proxy: Proxy::at(Floor::new(0.0, 0.0)),
@@ -70,8 +74,21 @@ impl Following {
         }
     }
 
+    /// What is wanted of the column: nothing while somebody has come in and nobody knows yet where they are.
+    pub fn wanted(
+        &mut self,
+        persons: &[Person],
+        scene: &Scene,
+        priors: &[f64],
+        now: Time,
+        parameters: &Parameters,
+    ) -> Option<Wish> {
+        let wish = self.weigh(persons, scene, priors, now, parameters);
+        wish.filter(|_| !persons.iter().any(Person::is_unseen))
+    }
+
     /// Weigh every visitor's objects and choose whom to serve: the strongest intention, with some constancy.
-    pub fn weigh(
+    fn weigh(
         &mut self,
         persons: &[Person],
         scene: &Scene,
@@ -80,6 +97,11 @@ impl Following {
         parameters: &Parameters,
     ) -> Option<Wish> {
         self.visitors.retain(|v| persons.iter().any(|p| p.id() == v.person));
+        if self.believed_priors != priors {
+            self.believed_priors.clear();
+            self.believed_priors.extend_from_slice(priors);
+            self.visitors.iter_mut().for_each(|v| v.believed_at = None);
+        }
         self.clearances_m.clear();
         for person in persons {
             self.clearances_m.push(cone_radius_m(person.nearest_object_m()));
@@ -88,12 +110,16 @@ impl Following {
             };
             let index = self.visitors.iter().position(|v| v.person == person.id()).unwrap_or_else(|| {
                 let rule = self.rule.rule();
-                self.visitors.push(Visitor { person: person.id(), rule, belief: Belief::default() });
+                let (sights, belief) = (Vec::new(), Belief::default());
+                self.visitors.push(Visitor { person: person.id(), rule, sights, belief, believed_at: None });
                 self.visitors.len() - 1
             });
             let visitor = &mut self.visitors[index];
-            intention::sights(scene, priors, &sample.pose, &mut self.sights);
-            visitor.rule.weigh(&self.sights, &mut visitor.belief);
+            if visitor.believed_at != Some(sample.taken_at) {
+                intention::sights(scene, priors, &sample.pose, &mut visitor.sights);
+                visitor.rule.weigh(&visitor.sights, &mut visitor.belief);
+                visitor.believed_at = Some(sample.taken_at);
+            }
         }
         let reliable =
             |v: &&Visitor| persons.iter().any(|p| p.id() == v.person && p.lost(now, parameters).is_none());
@@ -239,12 +265,21 @@ impl Following {
 
     /// The belief about the served visitor.
     pub fn belief(&self) -> Option<&Belief> {
-        let serves = self.serves?;
-        self.visitors.iter().find(|v| v.person == serves).map(|v| &v.belief)
+        self.served_visitor().map(|v| &v.belief)
+    }
+
+    /// The objects as the served visitor has them.
+    pub fn sights(&self) -> Option<&[Sight]> {
+        self.served_visitor().map(|v| &v.sights[..])
     }
 
     pub fn serves(&self) -> Option<PersonId> {
         self.serves
+    }
+
+    fn served_visitor(&self) -> Option<&Visitor> {
+        let serves = self.serves?;
+        self.visitors.iter().find(|v| v.person == serves)
     }
 }
 

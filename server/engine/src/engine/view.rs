@@ -135,16 +135,17 @@ impl Engine {
     fn objects(&self) -> Vec<ObjectState> {
         let from = self.report.map_or(Floor::new(0.0, 0.0), |r| r.position);
         let belief = self.following.belief();
-        let total: f64 = belief.map_or(0.0, |b| b.weights.iter().sum());
+        let total = belief.map_or(0.0, Belief::total);
+        let sights = self.following.sights();
         let visitor = self.following.serves().and_then(|id| self.person(id));
+        let pace_mps = visitor.map_or(BRISK_MPS, |v| v.velocity().norm().max(BRISK_MPS));
         let objects = self.scene.objects().iter().zip(&self.scene.spec().objects).enumerate();
         objects
             .map(|(i, (object, spec))| {
                 let weight = belief.and_then(|b| b.weights.get(i)).copied().unwrap_or(0.0);
-                let touch_secs = visitor.and_then(|v| {
-                    let head = v.newest()?.pose.position;
-                    let left_m = (object.distance_m(&head) - ARM_M).max(0.0);
-                    Some(left_m / v.velocity().norm().max(BRISK_MPS))
+                let touch_secs = sights.and_then(|sights| sights.get(i)).map(|sight| {
+                    let left_m = (sight.distance_m - ARM_M).max(0.0);
+                    left_m / pace_mps
                 });
                 ObjectState {
                     id: spec.id.clone(),

@@ -7,6 +7,10 @@ use super::{Belief, Rule, Sight};
 pub struct Nearest;
 
 impl Rule for Nearest {
+    fn boxed(&self) -> Box<dyn Rule> {
+        Box::new(*self)
+    }
+
     fn weigh(&mut self, sights: &[Sight], belief: &mut Belief) {
         belief.weights.clear();
         let weight = |s: &Sight| if s.enabled { s.prior / (1.0 + s.distance_m) } else { 0.0 };

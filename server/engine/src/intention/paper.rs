@@ -51,6 +51,10 @@ impl Paper {
 }
 
 impl Rule for Paper {
+    fn boxed(&self) -> Box<dyn Rule> {
+        Box::new(self.clone())
+    }
+
     fn weigh(&mut self, sights: &[Sight], belief: &mut Belief) {
         self.unmultiplied.clear();
         self.unmultiplied

@@ -13,6 +13,8 @@ use crate::frames::{Point, Pose, Room};
 pub struct Surface {
     shape: SharedShape,
     centre: Point<Room>,
+    /// No surface point is farther from the centre, m.
+    reach_m: f64,
     yaw_sin_cos: (f64, f64),
     upright: bool,
 }
@@ -47,6 +49,7 @@ impl Surface {
         Ok(Self {
             shape,
             centre: spec.position,
+            reach_m: reach_m(&spec.shape) + ROUNDING_M,
             yaw_sin_cos: spec.yaw_rad.sin_cos(),
             upright: matches!(spec.shape, Shape::Cylinder { .. }),
         })
@@ -59,15 +62,28 @@ impl Surface {
         if nearest.is_inside { 0.0 } else { nearest.point.distance(local) }
     }
 
+    /// No less than this from the head to the nearest surface point, m: to the ball about it; negative inside the ball.
+    pub fn at_least_m(&self, head: &Point<Room>) -> f64 {
+        (head.vector() - self.centre.vector()).norm() - self.reach_m - ROUNDING_M
+    }
+
     /// Angle between the view axis and the object, rad: 0 when the view ray hits any surface point, else to its centre.
     pub fn angle_rad(&self, head: &Pose<Room>) -> f64 {
         let to_centre = self.centre.vector() - head.position.vector();
         let view = head.view();
-        let ray = Ray { origin: self.local(-to_centre), dir: self.local(view) };
-        if self.shape.intersects_local_ray(&ray, FARTHEST_SIGHT_M) {
-            return 0.0;
+        if self.may_be_hit(&view, &to_centre) {
+            let ray = Ray { origin: self.local(-to_centre), dir: self.local(view) };
+            if self.shape.intersects_local_ray(&ray, FARTHEST_SIGHT_M) {
+                return 0.0;
+            }
         }
         view.angle(&to_centre)
+    }
+
+    /// The view ray comes into the ball about the surface; only then is the surface itself asked.
+    fn may_be_hit(&self, view: &Vector3<f64>, to_centre: &Vector3<f64>) -> bool {
+        let along = view.dot(to_centre).max(0.0);
+        (to_centre - view * along).norm_squared() <= self.reach_m * self.reach_m
     }
 
     /// Room axes to the shape's own; parry's cylinders stand along y.
@@ -75,6 +91,18 @@ impl Surface {
         let (sin, cos) = self.yaw_sin_cos;
         let (x, y, z) = (cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z);
         if self.upright { Vector::new(x, z, -y) } else { Vector::new(x, y, z) }
+    }
+}
+
+/// The greatest distance of a surface point from the centre, m.
+fn reach_m(shape: &Shape) -> f64 {
+    let farthest = |points: &[[f64; 3]]| points.iter().map(|p| vector(p).length()).fold(0.0, f64::max);
+    match shape {
+        Shape::Sphere { radius_m } => *radius_m,
+        Shape::Box { size_m } => 0.5 * vector(size_m).length(),
+        Shape::Cylinder { radius_m, height_m } => radius_m.hypot(0.5 * height_m),
+        Shape::ConvexMesh { points_m } => farthest(points_m),
+        Shape::TriangleMesh { vertices_m, .. } => farthest(vertices_m),
     }
 }
 
@@ -172,6 +200,8 @@ fn from_vector(v: Vector) -> Vector3<f64> {
 const LEAST_SIZE_M: f64 = 0.001;
 const GREATEST_SIZE_M: f64 = 50.0;
 const MOST_VERTICES: usize = 100_000;
+/// Floating point at the size of an arena, m.
+const ROUNDING_M: f64 = 1e-6;
 /// No arena is larger.
 const FARTHEST_SIGHT_M: f64 = 200.0;
 
@@ -179,6 +209,7 @@ const FARTHEST_SIGHT_M: f64 = 200.0;
 mod tests {
     use super::*;
     use nalgebra::UnitQuaternion;
+    use proptest::prelude::*;
 
     fn object(shape: Shape) -> ObjectSpec {
         ObjectSpec {
@@ -262,6 +293,48 @@ mod tests {
         let hull = Surface::build(&spec).unwrap();
         assert!((hull.distance_m(&Point::new(3.0, 1.0, 1.0)) - 0.5).abs() < 1e-9);
         assert_eq!(hull.angle_rad(&head(0.0, 1.0, 1.0, 0.0)), 0.0);
+    }
+
+    fn shapes() -> [Shape; 5] {
+        let corners: Vec<[f64; 3]> =
+            vec![[0.4, 0.0, -0.1], [-0.2, 0.3, -0.1], [-0.2, -0.3, -0.1], [0.0, 0.0, 0.5]];
+        let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        [
+            Shape::Sphere { radius_m: 0.3 },
+            Shape::Box { size_m: [1.0, 0.2, 0.6] },
+            Shape::Cylinder { radius_m: 0.2, height_m: 1.4 },
+            Shape::ConvexMesh { points_m: corners.clone() },
+            Shape::TriangleMesh { vertices_m: corners, triangles },
+        ]
+    }
+
+    proptest! {
+        /// What the ball about a surface leaves out, the surface itself would have left out.
+        #[test]
+        fn the_ball_about_a_surface_changes_nothing(
+            (x, y, z) in (0.0..4.0f64, -1.0..3.0f64, 0.0..2.0f64), yaw in -3.2..3.2f64, pitch in -1.5..1.5f64,
+        ) {
+            let position = Point::new(x, y, z);
+            for shape in shapes() {
+                let surface = Surface::build(&object(shape)).unwrap();
+                prop_assert!(surface.distance_m(&position) >= surface.at_least_m(&position));
+                let looks = |yaw: f64, pitch: f64| {
+                    let orientation = UnitQuaternion::from_euler_angles(0.0, pitch, yaw);
+                    let head = Pose { position, orientation };
+                    let to_centre = surface.centre.vector() - position.vector();
+                    let ray = Ray { origin: surface.local(-to_centre), dir: surface.local(head.view()) };
+                    let hits = surface.shape.intersects_local_ray(&ray, FARTHEST_SIGHT_M);
+                    let asked = if hits { 0.0 } else { head.view().angle(&to_centre) };
+                    (surface.angle_rad(&head), asked)
+                };
+                let (found, asked) = looks(yaw, pitch);
+                prop_assert_eq!(found, asked);
+                // About the object too, where most rays hit or just miss.
+                let to = surface.centre.vector() - position.vector();
+                let (found, asked) = looks(to.y.atan2(to.x) + 0.1 * yaw, -to.z.atan2(to.x.hypot(to.y)) + 0.1 * pitch);
+                prop_assert_eq!(found, asked);
+            }
+        }
     }
 
     #[test]
