@@ -21,7 +21,7 @@ use covr_engine::event::Event;
 use covr_engine::observation::{Observation, PersonId, PoseSample};
 use covr_engine::scene::Scene;
 use covr_engine::snapshot::Snapshot;
-use covr_engine::{Answer, Engine, Request};
+use covr_engine::{Answer, Engine, Outlook, Request};
 use covr_gantry::contract::Gantry;
 use covr_wire::dashboard::ControlLoop;
 use tokio::sync::{mpsc, oneshot, watch};
@@ -70,6 +70,8 @@ pub struct Published {
     pub snapshot: Snapshot,
     /// The scene in force.
     pub scene: Arc<Scene>,
+    /// What the engine decides with, for those who look ahead. Whoever does pays for it on a thread of their own.
+    pub outlook: Outlook,
     /// The loop's health.
     pub control_loop: ControlLoop,
 }

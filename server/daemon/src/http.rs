@@ -7,6 +7,7 @@ mod health;
 mod input;
 mod machine;
 mod openapi;
+mod priors;
 mod problem;
 mod records;
 mod scenes;
@@ -31,8 +32,8 @@ use tower_http::trace::TraceLayer;
 
 pub use health::Readiness;
 pub use machine::{Answered, StopAcknowledged};
+pub use priors::{ObjectPreview, PriorsChanged, PriorsPreview};
 pub use problem::{PROBLEM_JSON, Problem, ProblemItem};
-pub use records::PriorsChanged;
 pub use scenes::{SceneActivated, SceneChecked, SceneStored};
 
 use crate::app::App;
@@ -46,6 +47,7 @@ pub fn router(app: Arc<App>) -> Router {
                 "/api/v1",
                 machine::routes()
                     .merge(scenes::routes())
+                    .merge(priors::routes())
                     .merge(records::routes())
                     .merge(sessions::routes())
                     .merge(config::routes()),

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use covr_engine::engine::outlook::POINT_EVERY;
 use covr_engine::mode::Mode;
+use covr_engine::time::Time;
 use covr_wire::dashboard::{Snapshot, Surroundings, ToDashboard};
 use metrics::{counter, gauge};
 use tokio::sync::watch;
@@ -12,8 +14,12 @@ use crate::app::App;
 use crate::control::Published;
 use crate::meters;
 
-/// The wire's snapshot of a published state.
+/// The wire's snapshot of a published state, with the way ahead.
 pub fn wire_snapshot(app: &App, published: &Published) -> Snapshot {
+    with_path(app, published, path(published))
+}
+
+fn with_path(app: &App, published: &Published, planned_path_m: Vec<[f64; 2]>) -> Snapshot {
     let around = Surroundings {
         generation: published.generation,
         names: &app.persons.names(),
@@ -22,17 +28,43 @@ pub fn wire_snapshot(app: &App, published: &Published) -> Snapshot {
         scene_id: Some(app.stage.active().id),
         session_id: app.recorder.session_id(),
     };
-    Snapshot::new(&published.snapshot, around)
+    let mut snapshot = Snapshot::new(&published.snapshot, around);
+    snapshot.column.planned_path_m = planned_path_m;
+    snapshot
+}
+
+fn path(published: &Published) -> Vec<[f64; 2]> {
+    published.outlook.path().iter().map(|at| [at.x, at.y]).collect()
+}
+
+/// The way ahead, for all dashboards: looked at as often as its points are apart, and at once in another mode.
+#[derive(Default)]
+struct Ahead {
+    looked: Option<(Mode, Time)>,
+    path_m: Vec<[f64; 2]>,
+}
+
+impl Ahead {
+    fn path(&mut self, published: &Published) -> Vec<[f64; 2]> {
+        let now = (published.snapshot.mode, published.snapshot.at);
+        let is_fresh = |(mode, at): (Mode, Time)| mode == now.0 && now.1 - at < POINT_EVERY;
+        if !self.looked.is_some_and(is_fresh) {
+            self.looked = Some(now);
+            self.path_m = path(published);
+        }
+        self.path_m.clone()
+    }
 }
 
 /// Turn each newly published state into a dashboard's frame, once for all of them, and into metrics.
 pub async fn publish(app: Arc<App>, frames: watch::Sender<Arc<str>>) {
     let mut published = app.control.watch_published();
     let mut meter = Meter::new();
+    let mut ahead = Ahead::default();
     loop {
         let now = published.borrow_and_update().clone();
         if frames.receiver_count() > 1 {
-            let message = ToDashboard::Snapshot(Box::new(wire_snapshot(&app, &now)));
+            let message = ToDashboard::Snapshot(Box::new(with_path(&app, &now, ahead.path(&now))));
             match serde_json::to_string(&message) {
                 Ok(text) => {
                     frames.send_replace(text.into());

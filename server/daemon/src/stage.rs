@@ -78,6 +78,28 @@ pub enum ActivationRefused {
     Store(#[from] StoreError),
 }
 
+/// Priors by object index, as a game master wrote them by object id; else all that cannot be set.
+pub fn read_priors(
+    wanted: &BTreeMap<String, serde_json::Value>,
+    index_of: impl Fn(&str) -> Option<usize>,
+) -> Result<Vec<(usize, f64)>, Vec<BadPrior>> {
+    let mut bad = Vec::new();
+    let mut priors = Vec::new();
+    for (object, value) in wanted {
+        let refuse = |expected: &str| BadPrior {
+            object: object.clone(),
+            found: value.to_string(),
+            expected: expected.into(),
+        };
+        match (index_of(object), value.as_f64()) {
+            (None, _) => bad.push(refuse("an object of the active scene")),
+            (Some(index), Some(prior)) if (0.0..=1.0).contains(&prior) => priors.push((index, prior)),
+            (Some(_), _) => bad.push(refuse("a number from 0 to 1")),
+        }
+    }
+    if bad.is_empty() { Ok(priors) } else { Err(bad) }
+}
+
 impl ActiveScene {
     /// A stored version, built.
     pub fn build(stored: SceneVersion) -> Result<Self, Vec<SceneError>> {
@@ -148,23 +170,7 @@ impl Stage {
     ) -> Result<Vec<PriorChange>, PriorsRefused> {
         let mut priors = self.priors.lock().await;
         let active = self.active();
-        let mut bad = Vec::new();
-        let mut to_set = Vec::new();
-        for (object, value) in wanted {
-            let refuse = |expected: &str| BadPrior {
-                object: object.clone(),
-                found: value.to_string(),
-                expected: expected.into(),
-            };
-            match (active.index_of(object), value.as_f64()) {
-                (None, _) => bad.push(refuse("an object of the active scene")),
-                (Some(index), Some(prior)) if (0.0..=1.0).contains(&prior) => to_set.push((index, prior)),
-                (Some(_), _) => bad.push(refuse("a number from 0 to 1")),
-            }
-        }
-        if !bad.is_empty() {
-            return Err(PriorsRefused::Invalid(bad));
-        }
+        let to_set = read_priors(wanted, |object| active.index_of(object)).map_err(PriorsRefused::Invalid)?;
         let Answer { outcome, detail } = control.ask(Request::SetPriors(to_set.clone())).await?;
         if outcome == Outcome::Refused {
             return Err(PriorsRefused::Refused(detail));

@@ -53,6 +53,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
         generation: 0,
         snapshot: engine.snapshot(now),
         scene: engine.scene().clone(),
+        outlook: engine.outlook(now),
         control_loop: control_loop.clone(),
     };
     let published = watch::Sender::new(Arc::new(first));
@@ -207,10 +208,12 @@ impl Run {
         self.control_loop.lateness_p99_micros = p99;
         self.control_loop.lateness_max_micros = max;
         let generation = self.published.borrow().generation + 1;
+        let now = self.clock.time_of(at);
         self.published.send_replace(Arc::new(Published {
             generation,
-            snapshot: self.engine.snapshot(self.clock.time_of(at)),
+            snapshot: self.engine.snapshot(now),
             scene: self.engine.scene().clone(),
+            outlook: self.engine.outlook(now),
             control_loop: self.control_loop.clone(),
         }));
     }
