@@ -1,6 +1,9 @@
 //! What is kept: acts with their authors, sessions, limits.
 
+use covr_tests::client::VrClient;
+use covr_tests::eventually;
 use covr_tests::server::TestServer;
+use covr_wire::client::Encoding;
 
 #[tokio::test]
 async fn who_asked_what_is_in_the_record_before_the_answer() {
@@ -44,6 +47,52 @@ async fn a_session_lasts_from_arming_to_the_stop_and_holds_its_events() {
 }
 
 #[tokio::test]
+async fn events_are_paged_and_filtered() {
+    let server = TestServer::start().await;
+    for number in 0..7 {
+        let body = format!("{{\"reason\": \"drill {number}\"}}");
+        server.call_as(Some("Bo"), "POST", "/api/v1/stop", Some(&body)).await;
+    }
+    let mut path = "/api/v1/events?kind=stop_pressed&limit=3".to_owned();
+    let mut pages: Vec<Vec<String>> = Vec::new();
+    loop {
+        let response = server.call("GET", &path, None).await;
+        assert!(response.status().is_success());
+        let link = response.headers().get("link").map(|link| link.to_str().unwrap().to_owned());
+        let events: Vec<serde_json::Value> = response.json().await.unwrap();
+        pages.push(events.iter().map(|e| e["detail"]["reason"].as_str().unwrap().to_owned()).collect());
+        let Some(link) = link else { break };
+        path = link.strip_prefix('<').unwrap().strip_suffix(">; rel=\"next\"").unwrap().to_owned();
+    }
+    let expected: [&[&str]; 3] =
+        [&["drill 6", "drill 5", "drill 4"], &["drill 3", "drill 2", "drill 1"], &["drill 0"]];
+    assert_eq!(pages, expected, "each once, newest first, and the last page says that it is the last");
+
+    let found =
+        server.good("GET", "/api/v1/events?search=SOFTWARE%20stop&kind=mode_changed,served", None).await;
+    assert!(!found.as_array().unwrap().is_empty());
+    assert!(found.as_array().unwrap().iter().all(|event| event["kind"] == "mode_changed"), "{found}");
+    assert_eq!(server.good("GET", "/api/v1/events?search=100%25", None).await, serde_json::json!([]));
+}
+
+#[tokio::test]
+async fn events_of_one_person_leave_out_the_others() {
+    let server = TestServer::start().await;
+    let mut client = VrClient::greeted(&server.host, "two", Encoding::Json).await;
+    client.enter("Ada").await;
+    client.enter("Bo").await;
+    let left = eventually("both are in the record", || async {
+        let ada = server.good("GET", "/api/v1/events?person=Ada", None).await;
+        let bo = server.good("GET", "/api/v1/events?person=Bo", None).await;
+        let both = ada.as_array().unwrap().len() == 1 && bo.as_array().unwrap().len() == 1;
+        both.then_some(ada)
+    })
+    .await;
+    assert_eq!((&left[0]["kind"], &left[0]["detail"]["name"]), (&"person_entered".into(), &"Ada".into()));
+    assert_eq!(server.good("GET", "/api/v1/events?person=two", None).await, serde_json::json!([]));
+}
+
+#[tokio::test]
 async fn limits_are_checked() {
     let server = TestServer::start().await;
     for path in ["/api/v1/events?limit=0", "/api/v1/sessions?limit=10001"] {
@@ -51,4 +100,8 @@ async fn limits_are_checked() {
         assert_eq!(problem.errors[0].path, "limit");
     }
     server.refused(400, "GET", "/api/v1/events?limit=many", None).await;
+    for (query, field) in [("kind=stop_presed", "kind"), ("search=", "search"), ("person=", "person")] {
+        let problem = server.refused(422, "GET", &format!("/api/v1/events?{query}"), None).await;
+        assert_eq!(problem.errors[0].path, field);
+    }
 }

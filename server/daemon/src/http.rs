@@ -2,6 +2,7 @@
 
 mod asyncapi;
 mod config;
+mod events;
 mod guard;
 mod health;
 mod input;
@@ -50,7 +51,8 @@ pub fn router(app: Arc<App>) -> Router {
                     .merge(priors::routes())
                     .merge(records::routes())
                     .merge(sessions::routes())
-                    .merge(config::routes()),
+                    .merge(config::routes())
+                    .merge(events::routes()),
             )
             .merge(health::routes()),
     );

@@ -18,7 +18,7 @@ use sqlx::sqlite::{
     SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
 };
 
-pub use events::NewEvent;
+pub use events::{EventFilter, EventPage, NewEvent};
 pub use priors::{PriorChange, StoredPriorChange};
 pub use recordings::{Keep, NewChunk, StoredChunk};
 pub use scenes::{SceneVersion, StoredScene, StoredSceneVersion};

@@ -456,6 +456,30 @@ pub struct Event {
     pub detail: serde_json::Value,
 }
 
+impl Event {
+    /// Every kind.
+    pub const KINDS: [&'static str; 18] = [
+        "mode_changed",
+        "rule_breached",
+        "rule_cleared",
+        "request_accepted",
+        "request_refused",
+        "stop_pressed",
+        "person_entered",
+        "person_left",
+        "served",
+        "origin_changed",
+        "touch_began",
+        "touch_ended",
+        "scene_event",
+        "scene_activated",
+        "prior_changed",
+        "client_connected",
+        "client_gone",
+        "client_error",
+    ];
+}
+
 impl LinkThresholds {
     /// What suits a 90 Hz headset on a wireless link and a 250 Hz loop.
     pub const USUAL: Self = Self {

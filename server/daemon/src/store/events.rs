@@ -15,6 +15,30 @@ pub struct NewEvent {
     pub event: Event,
 }
 
+/// Which events; what is not given does not restrict.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct EventFilter {
+    /// Of one session.
+    pub session: Option<i64>,
+    /// Stored before this row.
+    pub before: Option<i64>,
+    /// Of one of these kinds.
+    pub kinds: Option<Vec<String>>,
+    /// With this text in their summary; upper and lower case are the same for plain letters.
+    pub search: Option<String>,
+    /// About the person of this name.
+    pub person: Option<String>,
+}
+
+/// Some events, newest first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EventPage {
+    /// The events.
+    pub events: Vec<Event>,
+    /// `before` of the next page; none when these were the last.
+    pub next: Option<i64>,
+}
+
 impl Store {
     /// Store events, all or none, and count them to their sessions.
     pub async fn add_events(&self, events: &[NewEvent]) -> Result<(), StoreError> {
@@ -63,22 +87,34 @@ impl Store {
             .collect()
     }
 
-    /// The newest events, newest first, of one session or of all.
-    pub async fn events(&self, limit: u32, session: Option<i64>) -> Result<Vec<Event>, StoreError> {
-        let rows: Vec<(i64, String, String, String, String)> = sqlx::query_as(
-            "SELECT at_micros, at, kind, summary, detail FROM events \
-             WHERE ?2 IS NULL OR session_id = ?2 ORDER BY id DESC LIMIT ?1",
+    /// The newest events that pass a filter, newest first; with more behind them, where the next page begins.
+    pub async fn events(&self, limit: u32, filter: &EventFilter) -> Result<EventPage, StoreError> {
+        let kinds = filter.kinds.as_ref().map(|kinds| serde_json::json!(kinds).to_string());
+        let mut rows: Vec<Row> = sqlx::query_as(
+            "SELECT id, at_micros, at, kind, summary, detail FROM events \
+             WHERE (?2 IS NULL OR session_id = ?2) AND (?3 IS NULL OR id < ?3) \
+             AND (?4 IS NULL OR kind IN (SELECT value FROM json_each(?4))) \
+             AND (?5 IS NULL OR instr(lower(summary), lower(?5)) > 0) \
+             AND (?6 IS NULL OR (json_extract(detail, '$.person') IS NOT NULL AND json_extract(detail, '$.name') = ?6)) \
+             ORDER BY id DESC LIMIT ?1",
         )
-        .bind(limit)
-        .bind(session)
+        // One more than asked tells whether there is a next page.
+        .bind(i64::from(limit) + 1)
+        .bind(filter.session)
+        .bind(filter.before)
+        .bind(kinds)
+        .bind(&filter.search)
+        .bind(&filter.person)
         .fetch_all(&self.pool)
         .await?;
-        rows.into_iter()
-            .map(|(at_micros, at, kind, summary, detail)| {
-                let detail = serde_json::from_str(&detail).map_err(unreadable("event"))?;
-                Ok(Event { at_micros, at, kind, summary, detail })
-            })
-            .collect()
+        let more = rows.len() > limit as usize;
+        rows.truncate(limit as usize);
+        let next = rows.last().filter(|_| more).map(|oldest| oldest.0);
+        let read = |(_, at_micros, at, kind, summary, detail): Row| {
+            let detail = serde_json::from_str(&detail).map_err(unreadable("event"))?;
+            Ok(Event { at_micros, at, kind, summary, detail })
+        };
+        Ok(EventPage { events: rows.into_iter().map(read).collect::<Result<_, StoreError>>()?, next })
     }
 }
 
@@ -119,3 +155,5 @@ async fn count(connection: &mut SqliteConnection, session: i64, event: &Event) -
     sqlx::query(statement).bind(session).execute(connection).await?;
     Ok(())
 }
+
+type Row = (i64, i64, String, String, String, String);
