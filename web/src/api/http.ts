@@ -2,7 +2,7 @@
  * The server over HTTP: everything that the socket does not carry, and the stop's second lane. Each call has a
  * deadline; a refusal is a `Problem` with the server's own words.
  */
-import type { ConfigInForce, PriorChange, SceneDocument, SceneError, SceneSummary, SessionSummary, WireEvent } from "./types";
+import type { ConfigInForce, PriorChange, PriorPreview, SceneDocument, SceneError, SceneSummary, SessionSummary, WireEvent } from "./types";
 
 /** A refusal, as RFC 9457 has it. */
 export class Problem extends Error {
@@ -69,6 +69,11 @@ export async function changePriors(priors: Readonly<Record<string, number>>, aut
   await call("PATCH", "/api/v1/priors", { text: JSON.stringify(priors), author });
 }
 
+/** `POST /api/v1/priors/preview`: what such priors would lead to; changes nothing. */
+export async function previewPriors(priors: Readonly<Record<string, number>>, giveUp: AbortSignal): Promise<PriorPreview> {
+  return (await call("POST", "/api/v1/priors/preview", { text: JSON.stringify(priors), author: "" }, giveUp)) as PriorPreview;
+}
+
 /** `GET /api/v1/priors/changes`, newest first. */
 export async function listPriorChanges(): Promise<readonly PriorChange[]> {
   return (await call("GET", "/api/v1/priors/changes")) as readonly PriorChange[];
@@ -89,18 +94,58 @@ export async function readConfig(): Promise<ConfigInForce> {
   return (await call("GET", "/api/v1/config")) as ConfigInForce;
 }
 
-async function call(method: string, path: string, body?: { text: string; author: string }): Promise<unknown> {
+/** Which events are asked for; what is not given does not restrict. */
+export interface EventQuery {
+  readonly kinds: readonly string[] | null;
+  readonly session: number | null;
+  readonly search: string;
+  readonly person: string | null;
+}
+
+/** Some events, newest first, and where older ones are; null when these were the last. */
+export interface EventPage {
+  readonly events: readonly WireEvent[];
+  readonly next: string | null;
+}
+
+/** `GET /api/v1/events`, a page of those that a query lets through, or the page that an earlier one named. */
+export async function readEvents(query: EventQuery | string, giveUp: AbortSignal): Promise<EventPage> {
+  const response = await ask("GET", typeof query === "string" ? query : `/api/v1/events?${parametersOf(query)}`, undefined, giveUp);
+  const next = /<([^>]+)>; rel="next"/.exec(response.headers.get("Link") ?? "")?.[1];
+  return { events: (await response.json()) as readonly WireEvent[], next: next ?? null };
+}
+
+function parametersOf({ kinds, session, search, person }: EventQuery): string {
+  const parameters = new URLSearchParams({ limit: String(EVENTS_A_PAGE) });
+  if (kinds !== null) parameters.set("kind", kinds.join(","));
+  if (session !== null) parameters.set("session", String(session));
+  if (search !== "") parameters.set("search", search);
+  if (person !== null) parameters.set("person", person);
+  return parameters.toString();
+}
+
+async function call(method: string, path: string, body?: Body, giveUp?: AbortSignal): Promise<unknown> {
+  const text = await (await ask(method, path, body, giveUp)).text();
+  return text === "" ? null : (JSON.parse(text) as unknown);
+}
+
+/** What is sent, and by whom; nobody's name is left out. */
+interface Body {
+  readonly text: string;
+  readonly author: string;
+}
+
+async function ask(method: string, path: string, body?: Body, giveUp?: AbortSignal): Promise<Response> {
+  const deadline = AbortSignal.timeout(CALL_DEADLINE_MILLIS);
+  const author = body === undefined || body.author === "" ? {} : { "X-Covr-Author": encodeURIComponent(body.author) };
   const response = await fetch(path, {
     method,
     cache: "no-store",
-    signal: AbortSignal.timeout(CALL_DEADLINE_MILLIS),
-    ...(body === undefined
-      ? {}
-      : { body: body.text, headers: { "Content-Type": "application/json", "X-Covr-Author": encodeURIComponent(body.author) } }),
+    signal: giveUp === undefined ? deadline : AbortSignal.any([deadline, giveUp]),
+    ...(body === undefined ? {} : { body: body.text, headers: { "Content-Type": "application/json", ...author } }),
   });
   if (!response.ok) throw await problemOf(response);
-  const text = await response.text();
-  return text === "" ? null : (JSON.parse(text) as unknown);
+  return response;
 }
 
 async function problemOf(response: Response): Promise<Problem> {
@@ -141,3 +186,4 @@ function record(value: unknown): Record<string, unknown> {
 }
 
 const CALL_DEADLINE_MILLIS = 5000;
+const EVENTS_A_PAGE = 100;

@@ -53,6 +53,18 @@ export interface PriorChange {
   readonly to: number;
 }
 
+/** The answer of `POST /api/v1/priors/preview`, room frame, m. */
+export interface PriorPreview {
+  /** Where the column would be wanted; null when nobody would be served. */
+  readonly target_m: readonly [number, number] | null;
+  /** Id of the person who would be served. */
+  readonly serves: number | null;
+  /** Id of the object that the rule would be committed to. */
+  readonly committed: string | null;
+  readonly planned_path_m: readonly (readonly [number, number])[];
+  readonly objects: readonly { readonly id: string; readonly weight: number; readonly probability: number; readonly prior: number }[];
+}
+
 /** A row of `GET /api/v1/sessions`, newest first. */
 export interface SessionSummary {
   readonly id: number;
