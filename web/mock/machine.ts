@@ -2,7 +2,7 @@
  * A machine to look at: plausible numbers for the dashboard's development and tests. It makes no claim to be safe or
  * true; the real one is the server's.
  */
-import type { MachineRequest, Mode, ObjectState, Outcome, Person, SceneDocument, Snapshot, StopCause, WireEvent } from "../src/api/types";
+import type { MachineRequest, Mode, ObjectState, Outcome, Person, PriorPreview, SceneDocument, Snapshot, StopCause, WireEvent } from "../src/api/types";
 
 /** What the mock's owner may set up. */
 export interface MockOptions {
@@ -66,7 +66,7 @@ export class MockMachine {
   /** Stops; returns the microseconds to the drive, null if it was stopped already. */
   stop(reason: string | null): { toDriveMicros: number | null } {
     const already = this.#mode === "latched_stop";
-    this.event("stop_pressed", reason ?? "software stop");
+    this.event("stop_pressed", reason ?? "software stop", { author: "game master", by: "mock", reason, to_drive_micros: already ? 0 : 1840 });
     if (!already) this.#latch(`software stop: ${reason ?? "no reason given"}`);
     return { toDriveMicros: already ? null : 1840 };
   }
@@ -109,6 +109,26 @@ export class MockMachine {
     if (before === undefined) return null;
     this.#priors.set(id, prior);
     return before;
+  }
+
+  /** What other priors would lead to; the ids that are not of the scene instead. */
+  preview(priors: Readonly<Record<string, number>>): PriorPreview | { readonly unknown: readonly string[] } {
+    const unknown = Object.keys(priors).filter((id) => !this.#priors.has(id));
+    if (unknown.length > 0) return { unknown };
+    const before = new Map(this.#priors);
+    for (const [id, prior] of Object.entries(priors)) this.#priors.set(id, prior);
+    const objects = this.#objects();
+    this.#priors.clear();
+    for (const [id, prior] of before) this.#priors.set(id, prior);
+    const best = this.#best(objects);
+    const serves = this.#mode === "following";
+    return {
+      target_m: serves ? best.column_place_m : null,
+      serves: serves ? this.#person().id : null,
+      committed: serves ? best.id : null,
+      planned_path_m: serves ? this.#pathTo(best.column_place_m) : [],
+      objects: objects.map(({ id, weight, probability, prior }) => ({ id, weight, probability, prior })),
+    };
   }
 
   /** Reports and keeps an event. */
@@ -209,9 +229,10 @@ export class MockMachine {
   }
 
   #enter(mode: Mode): void {
+    const from = this.#mode;
     this.#mode = mode;
     this.#modeSinceSecs = this.#atSecs;
-    this.event("mode_changed", `now ${mode.replace("_", " ")}`);
+    this.event("mode_changed", `${from} to ${mode}`, { from, to: mode, because: "asked" });
   }
 
   #refusal(request: "home" | "arm" | "disarm" | "reset"): string | null {

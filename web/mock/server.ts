@@ -112,14 +112,39 @@ export class MockServer {
       if (scene === undefined) problem(response, 404, "Not found", `there is no scene ${second ?? ""}`);
       else reply(response, 200, scene.document);
     } else if (key === "PATCH priors") this.#changePriors(body, author, response);
+    else if (key === "POST priors" && second === "preview") {
+      const found = this.machine.preview(JSON.parse(body) as Record<string, number>);
+      if ("unknown" in found) problem(response, 422, "Invalid", `${found.unknown.join(", ")}: expected an object of the active scene`);
+      else reply(response, 200, found);
+    }
     else if (key === "GET priors") reply(response, 200, this.#changes);
     else if (key === "GET sessions") {
       reply(response, 200, [{ id: 1, started_at: STARTED_AT, ended_at: null, how: null, scene: MOCK_SCENE.name }]);
     } else if (key === "GET config") {
       reply(response, 200, MOCK_CONFIG);
     } else if (key === "GET events") {
-      reply(response, 200, this.machine.events.slice(0, Number(url.searchParams.get("limit") ?? "50")));
+this.#events(url, response);
     } else problem(response, 404, "Not found", `nothing is at ${url.pathname}`);
+  }
+
+  /** A page of events; rows are counted from the oldest, as a store would. */
+  #events(url: URL, response: ServerResponse): void {
+    const given = url.searchParams;
+    const [kinds, search, person] = [given.get("kind")?.split(","), given.get("search")?.toLowerCase(), given.get("person")];
+    const count = this.machine.events.length;
+    const before = Number(given.get("before") ?? Infinity);
+    const limit = Number(given.get("limit") ?? "100");
+    const found = this.machine.events
+      .map((event, index) => ({ event, row: count - index }))
+      .filter(({ event, row }) => row < before && (kinds?.includes(event.kind) ?? true) && event.summary.toLowerCase().includes(search ?? ""))
+      .filter(({ event }) => person === null || (event.detail as { readonly name?: string } | null)?.name === person);
+    const page = found.slice(0, limit);
+    const last = page.at(-1);
+    if (found.length > limit && last !== undefined) {
+      given.set("before", String(last.row));
+      response.setHeader("Link", `<${url.pathname}?${given.toString()}>; rel="next"`);
+    }
+    reply(response, 200, page.map(({ event }) => event));
   }
 
   #upload(body: string, author: string, response: ServerResponse): void {
@@ -160,7 +185,7 @@ export class MockServer {
         return;
       }
       this.#changes.unshift({ at: new Date().toISOString(), author, object: id, from: before, to: prior });
-      this.machine.event("prior_changed", `${author}: ${id} from ${before} to ${prior}`);
+      this.machine.event("prior_changed", `${author}: ${id} from ${before} to ${prior}`, { author, object: id, from: before, to: prior });
     }
     reply(response, 200, {});
   }

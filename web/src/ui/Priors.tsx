@@ -62,9 +62,10 @@ export function Priors(props: {
   const pending = (): number => Object.keys(drafts()).length;
   const weightThen = createMemo((): ReadonlyMap<string, number> => new Map(previewed(preview())?.objects.map(({ id, weight }) => [id, weight]) ?? []));
 
+  const isLive = createMemo(() => frozen() === null);
   const previewer = new Previewer(previewPriors, setPreview);
   createEffect(
-    on([drafts, () => frozen() === null], ([now, live]) => {
+    on([drafts, isLive], ([now, live]) => {
       previewer.edited(live ? wanted(now) : {});
     }),
   );
@@ -91,9 +92,12 @@ export function Priors(props: {
     clearTimeout(landed);
   });
   // Another scene, or the same anew: its priors are its own, and what was before cannot be set back.
+  const activation = createMemo(() =>
+    [props.live.scene()?.id, props.live.scene()?.version, props.live.events().find(({ kind }) => kind === "scene_activated")?.at].join(),
+  );
   createEffect(
     on(
-      () => [props.live.scene()?.id, props.live.scene()?.version, props.live.events().find(({ kind }) => kind === "scene_activated")?.at].join(),
+      activation,
       () => {
         setApplies([]);
         setQuestion(null);
@@ -110,13 +114,12 @@ export function Priors(props: {
     }
   };
   // Anybody's change arrives as an event: the list is read again.
+  const isOpen = createMemo(() => props.live.link().phase === "open");
+  const lastChangeAt = createMemo(() => props.live.events().find((event) => event.kind === "prior_changed")?.at);
   createEffect(
-    on(
-      () => [props.live.link().phase === "open", props.live.events().find((event) => event.kind === "prior_changed")?.at].join(),
-      () => {
-        if (props.live.link().phase === "open") void readChanges();
-      },
-    ),
+    on([isOpen, lastChangeAt], ([open]) => {
+      if (open) void readChanges();
+    }),
   );
 
   const changeWords = (list: readonly SetBack[]): string => {

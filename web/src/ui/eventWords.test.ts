@@ -1,0 +1,42 @@
+// @vitest-environment happy-dom
+import { afterEach, expect, it } from "vitest";
+import type { WireEvent } from "../api/types";
+import { useLanguage } from "../i18n";
+import { eventWords, particularsOf } from "./eventWords";
+
+afterEach(() => {
+  useLanguage("en");
+});
+
+const label = (id: string): string => ({ lamp: "Bedside lamp" })[id] ?? id;
+
+function event(kind: string, detail: unknown, summary = "in the server's words"): WireEvent {
+  return { at_micros: 1, at: "2026-01-01T10:00:00Z", kind, summary, detail };
+}
+
+it("says what happened in the page's language, with the objects' labels", () => {
+  const prior = event("prior_changed", { author: "Grace", object: "lamp", from: 0.5, to: 1 });
+  expect(eventWords(prior, label)).toEqual({ text: "Grace: prior of Bedside lamp 0.50 → 1.00", server: null });
+  useLanguage("fr");
+  expect(eventWords(prior, label).text).toBe("Grace : a priori de Bedside lamp 0.50 → 1.00");
+  expect(eventWords(event("served", { person: 1, name: "Ada", object: "lamp" }), label).text).toBe("la colonne est à Bedside lamp pour Ada");
+});
+
+it("keeps what the server adds beside it", () => {
+  const changed = event("mode_changed", { from: "following", to: "latched_stop", because: "software stop: drill" });
+  expect(eventWords(changed, label)).toEqual({ text: "Following → Latched stop", server: "software stop: drill" });
+  const stop = event("stop_pressed", { author: "Bo", by: "http", reason: null, to_drive_micros: 1840 });
+  expect(eventWords(stop, label)).toEqual({ text: "Bo pressed stop; at the drive after 1.8 ms", server: null });
+});
+
+it("falls back to the server's sentence for what it does not know", () => {
+  for (const odd of [event("made_up", { a: 1 }), event("served", { object: null, name: "Ada" }), event("mode_changed", { from: "asleep", to: "ready" }), event("prior_changed", null)]) {
+    expect(eventWords(odd, label)).toEqual({ text: null, server: "in the server's words" });
+  }
+});
+
+it("lists particulars with names, units and unknown fields as they are", () => {
+  const stop = event("stop_pressed", { author: "Bo", reason: null, to_drive_micros: 1840, colour: ["red"] });
+  expect(particularsOf(stop, label).map(({ name, value }) => [name, value])).toEqual([["Who", "Bo"], ["Reason", "–"], ["To the drive", "1.8 ms"], ["colour", '["red"]']]);
+  expect(particularsOf(event("x", "text"), label)).toEqual([]);
+});
