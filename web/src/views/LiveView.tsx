@@ -8,17 +8,19 @@ import { createLayout, type Limits } from "../lib/layout";
 import type { PreferenceStore } from "../lib/preferences";
 import type { Live } from "../live/live";
 import { Controls } from "../ui/Controls";
-import { Events } from "../ui/Events";
 import { Foldable } from "../ui/Foldable";
-import { Objects } from "../ui/Objects";
+import { LinkQuality } from "../ui/LinkQuality";
 import { Persons } from "../ui/Persons";
+import { Priors } from "../ui/Priors";
 import { Rules } from "../ui/Rules";
 import { SideView } from "../ui/SideView";
 import { Splitter } from "../ui/Splitter";
+import { Timeline } from "../ui/Timeline";
 import { livePicture, TopView } from "../ui/TopView";
+import { Weights } from "../ui/Weights";
 import type { Ghost } from "../ui/Arena";
 
-/** Machine, persons and rules; the pictures; objects and events. */
+/** Machine, persons and rules; the pictures; weights, priors, events and links. */
 export function LiveView(props: {
   readonly live: Live;
   readonly author: string;
@@ -28,7 +30,7 @@ export function LiveView(props: {
   const layout = createLayout(props.preferences);
   const narrow = createMediaQuery(NARROW);
   const tab = (): Tab => layout.choice("tab", TABS);
-  const [ghost] = createSignal<Ghost | null>(null);
+  const [ghost, setGhost] = createSignal<Ghost | null>(null);
   const picture = livePicture(props.live, ghost);
   const side = (): boolean => layout.flag("side_view", false);
   const left = createMemo(() => layout.size("left", LEFT));
@@ -46,12 +48,12 @@ export function LiveView(props: {
       {group.children}
     </div>
   );
-  const Panel = (panel: { readonly name: PanelName; readonly grows?: boolean; readonly children: JSX.Element }): JSX.Element => (
+  const Panel = (panel: { readonly name: PanelName; readonly grows?: boolean; readonly foldedAtFirst?: boolean; readonly children: JSX.Element }): JSX.Element => (
     <Foldable
       name={panel.name}
       title={words().live.panel[panel.name]}
       grows={panel.grows === true}
-      folded={layout.flag(`fold_${panel.name}`, false)}
+      folded={layout.flag(`fold_${panel.name}`, panel.foldedAtFirst === true)}
       fold={(folded) => { layout.keep(`fold_${panel.name}`, folded); }}
     >
       {panel.children}
@@ -88,10 +90,12 @@ export function LiveView(props: {
       <Splitter sizes="right" label={words().live.resizeRight} value={right()} limits={RIGHT} change={(px) => { layout.keep("right", px); }} testId="split-right" />
       <div class="desk-side desk-right" hidden={narrow() && LEFT_TABS.has(tab())}>
         <Group tab="objects">
-          <Panel name="weights" grows><Objects live={props.live} author={props.author} /></Panel>
+          <Panel name="weights" grows><Weights live={props.live} /></Panel>
+          <Panel name="priors" grows><Priors live={props.live} author={props.author} onGhost={setGhost} /></Panel>
         </Group>
         <Group tab="events">
-          <Panel name="timeline" grows><Events live={props.live} /></Panel>
+          <Panel name="timeline" grows><Timeline live={props.live} /></Panel>
+          <Panel name="links" grows foldedAtFirst={!narrow()}><LinkQuality live={props.live} /></Panel>
         </Group>
       </div>
     </div>
