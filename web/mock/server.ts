@@ -30,8 +30,12 @@ export class MockServer {
       this.#broadcast({ type: "event", ...event });
     });
     this.#store(MOCK_SCENE, "mock");
+    let steppedMillis = performance.now();
     this.#timer = setInterval(() => {
-      this.machine.step(STEP_SECS);
+      // The clock is the wall's: a timer that comes late must not make the state look old.
+      const nowMillis = performance.now();
+      this.machine.step((nowMillis - steppedMillis) / 1000);
+      steppedMillis = nowMillis;
       this.#broadcast({ type: "snapshot", ...this.machine.snapshot() });
     }, STEP_SECS * 1000);
   }
