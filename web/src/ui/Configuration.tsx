@@ -36,7 +36,7 @@ export function Configuration(): JSX.Element {
                   </>
                 )}
               </Show>{" "}
-              {words().settings.versions.built}{": "}
+              · {words().settings.versions.built}{" "}
               <code>
                 {found().built.profile}, {found().built.target}, {found().built.rustc}
                 {found().built.commit === null ? "" : `, ${found().built.commit ?? ""}`}

@@ -32,7 +32,7 @@ function Yours(props: Parameters<typeof SettingsView>[0]): JSX.Element {
       <h2 id="yours-title">{say().title}</h2>
       <p class="empty">{say().kept(props.author)}</p>
       <div class="setting">
-        <label for="setting-name">{words().shell.author.label}</label>
+        <label for="setting-name">{words().shell.author.title}</label>
         <div>
           <input
             id="setting-name"

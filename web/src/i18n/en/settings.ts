@@ -15,7 +15,7 @@ export const settings = {
     title: "Versions and documents",
     server: "Server",
     machine: "Machine",
-    built: "Built",
+    built: "Built:",
     protocol: "Protocol",
     page: "This page",
     unknown: "unknown",

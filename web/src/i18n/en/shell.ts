@@ -1,7 +1,7 @@
 /** Words of the area `shell`: what stands on every view. */
 export const shell = {
   pages: { label: "Views", live: "Live", scenes: "Scenes", sessions: "Sessions", settings: "Settings", help: "Help" },
-  author: { label: "you are", means: "Your name, as the records of priors and scenes name you" },
+  author: { label: "you are", title: "Your name", means: "Your name, as the records of priors and scenes name you" },
   theme: { label: "Theme", dark: "Dark", light: "Light", system: "As the system", change: "Theme: switch between dark and light" },
   language: { label: "Language", change: "Language: English or French" },
   shortcutsButton: "Keyboard shortcuts",

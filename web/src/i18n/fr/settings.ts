@@ -15,7 +15,7 @@ export const settings = {
     title: "Versions et documents",
     server: "Serveur",
     machine: "Machine",
-    built: "Compilation",
+    built: "Compilation :",
     protocol: "Protocole",
     page: "Cette page web",
     unknown: "inconnue",

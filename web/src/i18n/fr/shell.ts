@@ -1,7 +1,7 @@
 /** Words of the area `shell`: what stands on every view. */
 export const shell = {
   pages: { label: "Vues", live: "En direct", scenes: "Scènes", sessions: "Séances", settings: "Réglages", help: "Aide" },
-  author: { label: "vous êtes", means: "Votre nom, tel qu’il figure dans l’historique des a priori et des scènes" },
+  author: { label: "vous êtes", title: "Votre nom", means: "Votre nom, tel qu’il figure dans l’historique des a priori et des scènes" },
   theme: { label: "Thème", dark: "Sombre", light: "Clair", system: "Comme le système", change: "Thème : passer du sombre au clair" },
   language: { label: "Langue", change: "Langue : anglais ou français" },
   shortcutsButton: "Raccourcis clavier",
@@ -60,7 +60,7 @@ export const shell = {
     home: "Origine",
     arm: "Armer",
     disarm: "Désarmer",
-    reset: "Réinit.…",
+    reset: "Réinit…",
     homeDoes: "cherche les fins de course ; l’arène doit être vide",
     armDoes: "suit le visiteur",
     disarmDoes: "freine et libère les moteurs",
