@@ -137,7 +137,7 @@ describe("the tour", () => {
       await first.picture(`tour-${steps.length}`);
       await first.page.getByTestId("tour-next").press("Enter");
     }
-    expect(steps).toEqual(["mode", "stop", "machine", "picture", "rules", "priors", "pages"]);
+    expect(steps).toEqual(["mode", "stop", "picture", "rules", "priors", "timeline", "pages"]);
     await first.page.reload();
     await first.isLive();
     expect(await tour.count()).toBe(0);

@@ -141,10 +141,10 @@ function find(selector: string): HTMLElement | null {
 const STEPS = [
   { name: "mode", selector: ".mode" },
   { name: "stop", selector: '[data-testid="stop"]' },
-  { name: "machine", selector: 'section[aria-labelledby="machine-title"]' },
-  { name: "picture", selector: ".top-view" },
+  { name: "picture", selector: '[data-testid="top-view"]' },
   { name: "rules", selector: 'section[aria-labelledby="rules-title"]' },
-  { name: "priors", selector: 'section[aria-labelledby="objects-title"]' },
+  { name: "priors", selector: 'section[aria-labelledby="priors-title"], section[aria-labelledby="objects-title"]' },
+  { name: "timeline", selector: 'section[aria-labelledby="timeline-title"], section[aria-labelledby="events-title"]' },
   { name: "pages", selector: ".ways" },
 ] as const;
 const GAP_PX = 12;
