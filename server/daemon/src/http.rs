@@ -10,7 +10,6 @@ mod machine;
 mod openapi;
 mod priors;
 mod problem;
-mod records;
 mod scenes;
 mod sessions;
 mod timing;
@@ -49,7 +48,7 @@ pub fn router(app: Arc<App>) -> Router {
                 machine::routes()
                     .merge(scenes::routes())
                     .merge(priors::routes())
-                    .merge(records::routes())
+                    
                     .merge(sessions::routes())
                     .merge(config::routes())
                     .merge(events::routes()),

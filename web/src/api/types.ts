@@ -21,12 +21,16 @@ export type {
   Outcome,
   Person,
   PropDocument,
+  RecordedFrame,
   RequestState,
   RuleState,
   RuleStatus,
   SceneDocument,
+  SceneInForce,
   SeparationTerm,
   SeparationTerms,
+  Session,
+  SessionDetail,
   ShapeDocument,
   Snapshot,
   StopCause,
@@ -63,6 +67,16 @@ export interface PriorPreview {
   readonly committed: string | null;
   readonly planned_path_m: readonly (readonly [number, number])[];
   readonly objects: readonly { readonly id: string; readonly weight: number; readonly probability: number; readonly prior: number }[];
+}
+
+/** A row of `GET /api/v1/scenes/{id}/versions`, newest first. */
+export interface SceneVersionSummary {
+  readonly version: number;
+  readonly author: string;
+  readonly created_at: string;
+  readonly active: boolean;
+  /** How many objects it has. */
+  readonly objects: number;
 }
 
 /** A row of `GET /api/v1/sessions`, newest first. */
