@@ -21,12 +21,16 @@ export type {
   Outcome,
   Person,
   PropDocument,
+  RecordedFrame,
   RequestState,
   RuleState,
   RuleStatus,
   SceneDocument,
+  SceneInForce,
   SeparationTerm,
   SeparationTerms,
+  Session,
+  SessionDetail,
   ShapeDocument,
   Snapshot,
   StopCause,
@@ -51,6 +55,16 @@ export interface PriorChange {
   readonly object: string;
   readonly from: number;
   readonly to: number;
+}
+
+/** A row of `GET /api/v1/scenes/{id}/versions`, newest first. */
+export interface SceneVersionSummary {
+  readonly version: number;
+  readonly author: string;
+  readonly created_at: string;
+  readonly active: boolean;
+  /** How many objects it has. */
+  readonly objects: number;
 }
 
 /** A row of `GET /api/v1/sessions`, newest first. */
