@@ -6,7 +6,9 @@ import type { IncomingMessage, Server, ServerResponse } from "node:http";
 import { WebSocketServer, type WebSocket } from "ws";
 import type { FromDashboard, MachineRequest, PriorChange, SceneDocument, SceneError, ToDashboard } from "../src/api/types";
 import { MOCK_CONFIG } from "./config.ts";
+import { drawable } from "../src/lib/sceneText.ts";
 import { MockMachine, type MockOptions } from "./machine.ts";
+import { recordedFrames, sessionDetail, sessionEvents, sessions } from "./session.ts";
 import { LINK_THRESHOLDS, MACHINE_SHAPE, MOCK_SCENE } from "./scene.ts";
 
 interface StoredScene {
@@ -29,7 +31,7 @@ export class MockServer {
     this.machine = new MockMachine(MOCK_SCENE, options, (event) => {
       this.#broadcast({ type: "event", ...event });
     });
-    this.#store(MOCK_SCENE, "mock");
+    this.#store(MOCK_SCENE, "mock", 1);
     this.#timer = setInterval(() => {
       this.machine.step(STEP_SECS);
       this.#broadcast({ type: "snapshot", ...this.machine.snapshot() });
@@ -103,18 +105,28 @@ export class MockServer {
       reply(
         response,
         200,
-        this.#scenes.map(({ document, ...row }) => ({ ...row, name: document.name, active: row.id === this.machine.sceneId })),
+        [...new Set(this.#scenes.map(({ id }) => id))].map((id) => {
+          const { document, ...row } = this.#newest(id) as StoredScene;
+          return { ...row, name: document.name, active: id === this.machine.sceneId };
+        }),
       );
-    } else if (key === "POST scenes") this.#upload(body, author, response);
-    else if (key === "PUT scenes" && third === "activate") this.#activate(Number(second), response);
-    else if (key === "GET scenes") {
-      const scene = this.#scenes.find((stored) => stored.id === Number(second));
-      if (scene === undefined) problem(response, 404, "Not found", `there is no scene ${second ?? ""}`);
-      else reply(response, 200, scene.document);
-    } else if (key === "PATCH priors") this.#changePriors(body, author, response);
+    } else if (first === "scenes") this.#scene(method, second, third, url, body, author, response);
+    else if (key === "PATCH priors") this.#changePriors(body, author, response);
     else if (key === "GET priors") reply(response, 200, this.#changes);
     else if (key === "GET sessions") {
-      reply(response, 200, [{ id: 1, started_at: STARTED_AT, ended_at: null, how: null, scene: MOCK_SCENE.name }]);
+      const { searchParams } = url;
+      if (second === undefined) {
+        const found = sessions(STARTED_AT).filter((row) => row.scene.toLowerCase().includes((searchParams.get("search") ?? "").toLowerCase()));
+        reply(response, 200, found.filter((row) => row.id < Number(searchParams.get("before") ?? "Infinity")).slice(0, Number(searchParams.get("limit") ?? "100")));
+        return;
+      }
+      const detail = sessionDetail(Number(second), STARTED_AT);
+      const [fromSecs, toSecs, everySecs] = [searchParams.get("from_secs"), searchParams.get("to_secs"), searchParams.get("every_secs")].map(Number) as [number, number, number];
+      if (detail === null) problem(response, 404, "Not found", `there is no session ${second}`);
+      else if (third === undefined) reply(response, 200, detail);
+      else if (third === "events") reply(response, 200, sessionEvents(detail.id));
+      else if (third === "frames") reply(response, 200, { frames: detail.id === 2 ? recordedFrames(fromSecs, toSecs, everySecs) : [] });
+      else reply(response, 200, detail);
     } else if (key === "GET config") {
       reply(response, 200, MOCK_CONFIG);
     } else if (key === "GET events") {
@@ -122,34 +134,50 @@ export class MockServer {
     } else problem(response, 404, "Not found", `nothing is at ${url.pathname}`);
   }
 
-  #upload(body: string, author: string, response: ServerResponse): void {
+  #scene(method: string, second: string | undefined, third: string | undefined, url: URL, body: string, author: string, response: ServerResponse): void {
+    const id = Number(second);
+    const versions = this.#scenes.filter((stored) => stored.id === id).reverse();
+    const asked = url.searchParams.get("version");
+    const scene = asked === null ? versions[0] : versions.find(({ version }) => version === Number(asked));
+    if (method === "POST") this.#upload(body, author, second === "check" ? null : this.#scenes.length + 1, response);
+    else if (scene === undefined) problem(response, 404, "Not found", `there is no scene ${second ?? ""}`);
+    else if (third === "activate") this.#activate(scene, response);
+    else if (third === "versions") {
+      const active = ({ version }: StoredScene): boolean => id === this.machine.sceneId && version === this.machine.sceneVersion;
+      reply(response, 200, versions.map((stored) => ({ version: stored.version, author: stored.author, created_at: stored.changed_at, active: active(stored), objects: stored.document.objects.length })));
+    } else if (method === "PUT") this.#upload(body, author, id, response);
+    else reply(response, 200, scene.document);
+  }
+
+  /** Stores under an id, or only checks. */
+  #upload(body: string, author: string, id: number | null, response: ServerResponse): void {
     const checked = checkScene(body);
     if ("errors" in checked) {
       problem(response, 422, "Scene refused", `${checked.errors.length} finding(s)`, checked.errors);
-      return;
+    } else if (id === null) reply(response, 200, { valid: true, name: checked.scene.name, objects: checked.scene.objects.length });
+    else {
+      const stored = this.#store(checked.scene, author, id);
+      reply(response, 201, { id: stored.id, version: stored.version });
     }
-    const stored = this.#store(checked.scene, author);
-    reply(response, 201, { id: stored.id, version: stored.version });
   }
 
-  #store(document: SceneDocument, author: string): StoredScene {
-    const stored = { id: this.#scenes.length + 1, version: 1, author, changed_at: new Date().toISOString(), document };
+  #store(document: SceneDocument, author: string, id: number): StoredScene {
+    const stored = { id, version: (this.#newest(id)?.version ?? 0) + 1, author, changed_at: new Date().toISOString(), document };
     this.#scenes.push(stored);
     return stored;
   }
 
-  #activate(id: number, response: ServerResponse): void {
-    const scene = this.#scenes.find((stored) => stored.id === id);
-    if (scene === undefined) {
-      problem(response, 404, "Not found", `there is no scene ${id}`);
-      return;
-    }
+  #newest(id: number): StoredScene | undefined {
+    return this.#scenes.findLast((stored) => stored.id === id);
+  }
+
+  #activate(scene: StoredScene, response: ServerResponse): void {
     this.machine.useScene(scene.document);
     this.machine.sceneId = scene.id;
     this.machine.sceneVersion = scene.version;
     this.#broadcast(this.#sceneMessage());
     this.machine.event("scene_activated", `${scene.document.name} is active`);
-    reply(response, 200, { id: scene.id, version: scene.version });
+    reply(response, 200, { id: scene.id, version: scene.version, detail: `${scene.document.name} is active` });
   }
 
   #changePriors(body: string, author: string, response: ServerResponse): void {
@@ -174,21 +202,26 @@ export class MockServer {
   }
 }
 
-/** The few checks that the page's own tests need; the real ones are the server's. */
+/** The few checks that the page's own tests need, with the line of what they find; the real ones are the server's. */
 function checkScene(text: string): { scene: SceneDocument } | { errors: SceneError[] } {
-  const finding = (path: string, found: string, expected: string): SceneError => ({ path, line: 1, column: 1, found, expected });
+  const finding = (path: string, found: string, expected: string, at = 0): SceneError => {
+    const before = text.slice(0, at).split("\n");
+    return { path, line: before.length, column: Buffer.byteLength(before.at(-1) ?? "") + 1, found, expected };
+  };
   let document: Partial<SceneDocument>;
   try {
     document = JSON.parse(text) as Partial<SceneDocument>;
   } catch (error) {
-    return { errors: [finding("$", error instanceof Error ? error.message : "text", "JSON")] };
+    return { errors: [finding("$", error instanceof Error ? error.message : "text", "JSON", text.length)] };
   }
   const objects = document.objects ?? [];
   if (objects.length === 0) return { errors: [finding("$.objects", "nothing", "at least one object")] };
-  const errors = objects.flatMap((object, index) =>
-    object.prior < 0 || object.prior > 1 ? [finding(`$.objects[${index}].prior`, String(object.prior), "a number from 0 to 1")] : [],
-  );
-  return errors.length > 0 ? { errors } : { scene: { ...MOCK_SCENE, ...document } };
+  const errors = objects.flatMap((object, index) => {
+    if (object.prior >= 0 && object.prior <= 1) return [];
+    const at = text.indexOf('"prior"', text.indexOf(JSON.stringify(object.id)));
+    return [finding(`$.objects[${index}].prior`, String(object.prior), "a number from 0 to 1", at + text.slice(at).search(/:\s*/) + 2)];
+  });
+  return errors.length > 0 ? { errors } : { scene: { ...MOCK_SCENE, ...drawable(text) } };
 }
 
 function isRequest(name: string | undefined): name is Extract<MachineRequest, string> {

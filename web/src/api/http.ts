@@ -2,7 +2,18 @@
  * The server over HTTP: everything that the socket does not carry, and the stop's second lane. Each call has a
  * deadline; a refusal is a `Problem` with the server's own words.
  */
-import type { ConfigInForce, PriorChange, SceneDocument, SceneError, SceneSummary, SessionSummary, WireEvent } from "./types";
+import type {
+  ConfigInForce,
+  PriorChange,
+  RecordedFrame,
+  SceneDocument,
+  SceneError,
+  SceneSummary,
+  SceneVersionSummary,
+  Session,
+  SessionDetail,
+  WireEvent,
+} from "./types";
 
 /** A refusal, as RFC 9457 has it. */
 export class Problem extends Error {
@@ -54,14 +65,25 @@ export async function replaceScene(id: number, text: string, author: string): Pr
   return (await call("PUT", `/api/v1/scenes/${id}`, { text, author })) as { id: number; version: number };
 }
 
-/** `GET /api/v1/scenes/{id}`. */
-export async function readScene(id: number): Promise<SceneDocument> {
-  return (await call("GET", `/api/v1/scenes/${id}`)) as SceneDocument;
+/** `POST /api/v1/scenes/check`: whether the server would store it. */
+export async function checkScene(text: string, author: string): Promise<{ name: string; objects: number }> {
+  return (await call("POST", "/api/v1/scenes/check", { text, author })) as { name: string; objects: number };
 }
 
-/** `PUT /api/v1/scenes/{id}/activate`. */
-export async function activateScene(id: number, author: string): Promise<void> {
-  await call("PUT", `/api/v1/scenes/${id}/activate`, { text: "{}", author });
+/** `GET /api/v1/scenes/{id}`: a version, the newest when none is named. */
+export async function readScene(id: number, version?: number): Promise<SceneDocument> {
+  return (await call("GET", `/api/v1/scenes/${id}${version === undefined ? "" : `?version=${version}`}`)) as SceneDocument;
+}
+
+/** `GET /api/v1/scenes/{id}/versions`, newest first. */
+export async function listSceneVersions(id: number): Promise<readonly SceneVersionSummary[]> {
+  return (await call("GET", `/api/v1/scenes/${id}/versions`)) as readonly SceneVersionSummary[];
+}
+
+/** `PUT /api/v1/scenes/{id}/activate`; what it did, in the server's words. */
+export async function activateScene(id: number, version: number, author: string): Promise<string> {
+  const { detail } = record(await call("PUT", `/api/v1/scenes/${id}/activate?version=${version}`, { text: "{}", author }));
+  return typeof detail === "string" ? detail : "";
 }
 
 /** `PATCH /api/v1/priors`. */
@@ -74,9 +96,41 @@ export async function listPriorChanges(): Promise<readonly PriorChange[]> {
   return (await call("GET", "/api/v1/priors/changes")) as readonly PriorChange[];
 }
 
-/** `GET /api/v1/sessions`, newest first. */
-export async function listSessions(): Promise<readonly SessionSummary[]> {
-  return (await call("GET", "/api/v1/sessions")) as readonly SessionSummary[];
+/** `GET /api/v1/sessions`, newest first: those that a search finds, older than one. */
+export async function listSessions(asked: { search: string; before: number | null; limit: number }): Promise<readonly Session[]> {
+  const query = new URLSearchParams({ limit: String(asked.limit) });
+  if (asked.search !== "") query.set("search", asked.search);
+  if (asked.before !== null) query.set("before", String(asked.before));
+  return (await call("GET", `/api/v1/sessions?${query.toString()}`)) as readonly Session[];
+}
+
+/** `GET /api/v1/sessions/{id}`. */
+export async function readSession(id: number): Promise<SessionDetail> {
+  return (await call("GET", `/api/v1/sessions/${id}`)) as SessionDetail;
+}
+
+/** `GET /api/v1/sessions/{id}/frames`: those of a stretch, s from the session's start, oldest first. */
+export async function readFrames(
+  id: number,
+  fromSecs: number,
+  toSecs: number,
+  everySecs: number,
+  giveUp: AbortSignal,
+): Promise<readonly RecordedFrame[]> {
+  const query = new URLSearchParams({ from_secs: fromSecs.toFixed(3), to_secs: toSecs.toFixed(3) });
+  if (everySecs > 0) query.set("every_secs", String(everySecs));
+  const answer = record(await call("GET", `/api/v1/sessions/${id}/frames?${query.toString()}`, undefined, giveUp));
+  return answer["frames"] as readonly RecordedFrame[];
+}
+
+/** `GET /api/v1/sessions/{id}/events`, oldest first. */
+export async function listSessionEvents(id: number): Promise<readonly WireEvent[]> {
+  return (await call("GET", `/api/v1/sessions/${id}/events`)) as readonly WireEvent[];
+}
+
+/** Where a session is exported. */
+export function exportAddress(id: number, format: "csv" | "json"): string {
+  return `/api/v1/sessions/${id}/export?format=${format}`;
 }
 
 /** `GET /api/v1/events`, newest first. */
@@ -89,11 +143,12 @@ export async function readConfig(): Promise<ConfigInForce> {
   return (await call("GET", "/api/v1/config")) as ConfigInForce;
 }
 
-async function call(method: string, path: string, body?: { text: string; author: string }): Promise<unknown> {
+async function call(method: string, path: string, body?: { text: string; author: string }, giveUp?: AbortSignal): Promise<unknown> {
+  const deadline = AbortSignal.timeout(CALL_DEADLINE_MILLIS);
   const response = await fetch(path, {
     method,
     cache: "no-store",
-    signal: AbortSignal.timeout(CALL_DEADLINE_MILLIS),
+    signal: giveUp === undefined ? deadline : AbortSignal.any([deadline, giveUp]),
     ...(body === undefined
       ? {}
       : { body: body.text, headers: { "Content-Type": "application/json", "X-Covr-Author": encodeURIComponent(body.author) } }),

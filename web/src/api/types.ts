@@ -67,17 +67,6 @@ export interface SceneVersionSummary {
   readonly objects: number;
 }
 
-/** A row of `GET /api/v1/sessions`, newest first. */
-export interface SessionSummary {
-  readonly id: number;
-  readonly started_at: string;
-  readonly ended_at: string | null;
-  /** How it ended; null while it runs. */
-  readonly how: string | null;
-  /** What people call the scene that was active at its start. */
-  readonly scene: string;
-}
-
 /** One finding of a refused scene. */
 export interface SceneError {
   readonly path: string;

@@ -1,16 +1,21 @@
-/** The store of scenes: what there is, what is active, and a new one by file. */
-import { createEffect, createSignal, For, Match, on, Show, Switch, type JSX } from "solid-js";
-import { activateScene, listScenes } from "../api/http";
+/** The store of scenes: what there is, what is active, one of them in full, and a new one by file. */
+import { createEffect, createMemo, createSignal, For, Match, on, Show, Switch, type JSX } from "solid-js";
+import { listScenes } from "../api/http";
 import type { SceneSummary } from "../api/types";
+import { words } from "../i18n";
+import { createAddress, wholeNumber } from "../lib/address";
 import { dayAndTime } from "../lib/format";
 import type { Live } from "../live/live";
+import { DraftPanel } from "../ui/scenes/DraftPanel";
+import { SceneDetail } from "../ui/scenes/SceneDetail";
 import type { Upload } from "./upload";
 
-/** List, upload and activation. */
+/** The list on the left; on the right a draft, or the scene that the address names. */
 export function ScenesView(props: { readonly live: Live; readonly upload: Upload; readonly author: string }): JSX.Element {
+  const address = createAddress();
   const [scenes, setScenes] = createSignal<readonly SceneSummary[] | null>(null);
   const [trouble, setTrouble] = createSignal<string | null>(null);
-  const [asked, setAsked] = createSignal<number | null>(null);
+  const [search, setSearch] = createSignal("");
   let chooser!: HTMLInputElement;
 
   const read = async (): Promise<void> => {
@@ -18,180 +23,167 @@ export function ScenesView(props: { readonly live: Live; readonly upload: Upload
       setScenes(await listScenes());
       setTrouble(null);
     } catch (error) {
-      setTrouble(`The list could not be read: ${messageOf(error)}`);
+      setTrouble(error instanceof Error ? error.message : String(error));
     }
   };
-  createEffect(
-    on([() => props.upload.state().kind, () => props.live.link().phase, () => props.live.scene()], () => void read()),
-  );
-  const isActive = (scene: SceneSummary): boolean => props.live.scene()?.id === scene.id;
-  const activate = async (scene: SceneSummary): Promise<void> => {
-    setAsked(null);
-    try {
-      await activateScene(scene.id, props.author);
-      await read();
-    } catch (error) {
-      setTrouble(`${scene.name} was not activated: ${messageOf(error)}`);
-    }
+  createEffect(on([() => props.upload.stored(), () => props.live.link().phase, () => props.live.scene()], () => void read()));
+  const part = (): string | undefined => address().parts[0];
+  const id = createMemo(() => wholeNumber(part()));
+  const found = createMemo(() => {
+    const asked = search().trim().toLowerCase();
+    return (scenes() ?? []).filter((scene) => asked === "" || `${scene.name}\n${scene.author}\n${scene.id}`.toLowerCase().includes(asked));
+  });
+  const isMissing = (): boolean => part() !== undefined && (id() === null || (scenes() !== null && !scenes()?.some((scene) => scene.id === id())));
+  const state = (scene: SceneSummary): string => {
+    const active = props.live.scene();
+    if (active === null || active.id !== scene.id) return words().records.scenes.notActive;
+    return active.version === scene.version ? words().records.scenes.active : words().records.scenes.olderActive;
   };
 
   return (
-    <div class="sheet">
-      <h1>Scenes</h1>
-      <section class="panel upload" aria-labelledby="upload-title">
-        <h2 id="upload-title">Upload</h2>
-        <p>Drag a scene’s JSON file anywhere onto this page, or choose it.</p>
-        <input
-          ref={chooser}
-          type="file"
-          accept=".json,application/json"
-          class="unseen"
-          tabindex="-1"
-          aria-hidden="true"
-          data-testid="scene-file"
-          onChange={(event) => {
-            const file = event.currentTarget.files?.[0];
-            if (file !== undefined) void props.upload.send(file);
-            // The same file, mended, can be chosen again.
-            event.currentTarget.value = "";
-          }}
-        />
-        <button type="button" data-testid="scene-choose" onClick={() => { chooser.click(); }}>
-          Choose a file…
-        </button>
-        <UploadReport upload={props.upload} />
-      </section>
-      <section class="panel" aria-labelledby="stored-title">
-        <h2 id="stored-title">Stored scenes</h2>
-        <Show when={trouble()}>
-          <p class="answer refused" role="alert" data-testid="scenes-trouble">
-            {trouble()}
-          </p>
+    <div class="records" data-open={part() !== undefined || props.upload.draft() !== null ? "" : undefined}>
+      <h1 class="unseen">{words().records.scenes.title}</h1>
+      <div class="records-list">
+        <section class="panel upload" aria-labelledby="upload-title">
+          <h2 id="upload-title">{words().records.scenes.upload}</h2>
+          <p>{words().records.scenes.howToUpload}</p>
+          <input
+            ref={chooser}
+            type="file"
+            accept=".json,application/json"
+            class="unseen"
+            tabindex="-1"
+            aria-hidden="true"
+            data-testid="scene-file"
+            onChange={(event) => {
+              const file = event.currentTarget.files?.[0];
+              if (file !== undefined) {
+                location.hash = "#/scenes";
+                void props.upload.send(file);
+              }
+              // The same file, mended, can be chosen again.
+              event.currentTarget.value = "";
+            }}
+          />
+          <button type="button" data-testid="scene-choose" onClick={() => { chooser.click(); }}>
+            {words().records.scenes.choose}
+          </button>
+          <Reports upload={props.upload} />
+        </section>
+        <section class="panel" aria-labelledby="stored-title">
+          <h2 id="stored-title">{words().records.scenes.stored}</h2>
+          <input type="search" data-testid="scene-search" aria-label={words().records.scenes.search} placeholder={words().records.scenes.search} value={search()} onInput={(event) => setSearch(event.currentTarget.value)} />
+          <Show when={trouble()}>
+            {(why) => (
+              <p class="answer refused" role="alert" data-testid="scenes-trouble">
+                {words().records.scenes.listFailed(why())}{" "}
+                <button type="button" onClick={() => void read()}>{words().records.scenes.again}</button>
+              </p>
+            )}
+          </Show>
+          <Switch>
+            <Match when={scenes() === null}>
+              <Show when={trouble() === null}><p class="empty">{words().records.scenes.loading}</p></Show>
+            </Match>
+            <Match when={scenes()?.length === 0}>
+              <p class="empty">{words().records.scenes.none}</p>
+            </Match>
+            <Match when={found().length === 0}>
+              <p class="empty" data-testid="scenes-none-found">{words().records.scenes.noneFound(search())}</p>
+            </Match>
+            <Match when={true}>
+              <div class="wide scrolls">
+                <table data-testid="scenes">
+                  <thead>
+                    <tr>
+                      <th scope="col">{words().records.scenes.scene}</th>
+                      <th scope="col">{words().records.scenes.version}</th>
+                      <th scope="col">{words().records.scenes.by}</th>
+                      <th scope="col">{words().records.scenes.changed}</th>
+                      <th scope="col">{words().records.scenes.state}</th>
+                    </tr>
+                  </thead>
+                  <tbody>
+                    <For each={found()}>
+                      {(scene) => (
+                        <tr data-testid={`scene-${scene.id}`} classList={{ open: scene.id === id() }}>
+                          <th scope="row">
+                            <a href={`#/scenes/${scene.id}`} aria-current={scene.id === id() ? "page" : undefined} data-testid={`scene-open-${scene.id}`}>{scene.name}</a>{" "}
+                            <small>{scene.id}</small>
+                          </th>
+                          <td>{scene.version}</td>
+                          <td>{scene.author || words().records.scenes.unnamed}</td>
+                          <td>{dayAndTime(scene.changed_at)}</td>
+                          <td classList={{ "is-active": props.live.scene()?.id === scene.id }}>{state(scene)}</td>
+                        </tr>
+                      )}
+                    </For>
+                  </tbody>
+                </table>
+              </div>
+            </Match>
+          </Switch>
+        </section>
+      </div>
+      <div class="records-detail">
+        <Show when={id() !== null && !isMissing() ? id() : null} keyed>
+          {(open) => (
+            <SceneDetail
+              live={props.live}
+              id={open}
+              row={scenes()?.find((scene) => scene.id === open) ?? null}
+              author={props.author}
+              changed={() => void read()}
+              edit={(file, text, of) => {
+                props.upload.open(file, text, of);
+                location.hash = "#/scenes";
+              }}
+            />
+          )}
         </Show>
-        <Show when={scenes()?.length === 0}>
-          <p class="empty">None is stored yet.</p>
+        <Show when={isMissing()}>
+          <p class="panel answer refused" role="alert" data-testid="no-such-scene">{words().records.scenes.wrongAddress(part() ?? "")}</p>
         </Show>
-        <table data-testid="scenes">
-          <thead>
-            <tr>
-              <th scope="col">scene</th>
-              <th scope="col">id</th>
-              <th scope="col">version</th>
-              <th scope="col">by</th>
-              <th scope="col">changed</th>
-              <th scope="col">
-                <span class="unseen">Activation</span>
-              </th>
-            </tr>
-          </thead>
-          <tbody>
-            <For each={scenes() ?? []}>
-              {(scene) => (
-                <tr data-testid={`scene-${scene.id}`} classList={{ predicted: isActive(scene) }}>
-                  <th scope="row">{scene.name}</th>
-                  <td>{scene.id}</td>
-                  <td>{scene.version}</td>
-                  <td>{scene.author || "–"}</td>
-                  <td>{dayAndTime(scene.changed_at)}</td>
-                  <td class="activation">
-                    <Switch>
-                      <Match when={isActive(scene)}>
-                        <span class="tag" data-testid={`active-${scene.id}`}>
-                          active
-                        </span>
-                      </Match>
-                      <Match when={asked() === scene.id}>
-                        <span>The column will follow “{scene.name}” at once.</span>
-                        <button type="button" data-testid={`activate-confirm-${scene.id}`} onClick={() => void activate(scene)}>
-                          Activate
-                        </button>
-                        <button type="button" class="quiet" onClick={() => setAsked(null)}>
-                          Leave it
-                        </button>
-                      </Match>
-                      <Match when={true}>
-                        <button type="button" data-testid={`activate-${scene.id}`} onClick={() => setAsked(scene.id)}>
-                          Activate…
-                        </button>
-                      </Match>
-                    </Switch>
-                  </td>
-                </tr>
-              )}
-            </For>
-          </tbody>
-        </table>
-      </section>
+        <Show when={part() === undefined}>
+          <Show when={props.upload.draft()} fallback={<p class="empty records-pick">{words().records.scenes.pick}</p>}>
+            {(draft) => <DraftPanel live={props.live} upload={props.upload} draft={draft()} scenes={scenes() ?? []} />}
+          </Show>
+        </Show>
+      </div>
     </div>
   );
 }
 
-function UploadReport(props: { readonly upload: Upload }): JSX.Element {
-  const sending = (): string | null => {
-    const state = props.upload.state();
-    return state.kind === "sending" ? state.file : null;
-  };
-  const accepted = (): string | null => {
-    const state = props.upload.state();
-    return state.kind === "accepted" ? `${state.file} is stored as scene ${state.id}, version ${state.version}.` : null;
-  };
-  const refused = () => {
-    const state = props.upload.state();
-    return state.kind === "refused" ? state : null;
-  };
+/** What became of the last file, and a draft that waits. */
+function Reports(props: { readonly upload: Upload }): JSX.Element {
   return (
     <div role="status" data-testid="upload-report">
-      <Show when={sending()}>
-        <p>Sending {sending()}…</p>
+      <Show when={props.upload.stored()}>
+        {(stored) => (
+          <p class="answer good" data-testid="upload-accepted">
+            {words().records.draft.stored(stored().file, stored().id, stored().version)}{" "}
+            <a href={`#/scenes/${stored().id}`} data-testid="stored-open">{words().records.draft.open}</a>
+          </p>
+        )}
       </Show>
-      <Show when={accepted()}>
-        <p class="answer" data-testid="upload-accepted">
-          {accepted()}
-        </p>
+      <Show when={props.upload.unreadable()}>
+        {(trouble) => <p class="answer refused">{words().records.draft.unreadable(trouble().file, trouble().detail)}</p>}
       </Show>
-      <Show when={refused()}>
-        {(state) => (
-          <div class="answer refused" data-testid="upload-refused">
-            <p>
-              <b>{state().file} was refused.</b> {state().detail}
-            </p>
-            <Show when={state().errors.length > 0}>
-              <table class="scene-errors">
-                <thead>
-                  <tr>
-                    <th scope="col">path</th>
-                    <th scope="col">line</th>
-                    <th scope="col">column</th>
-                    <th scope="col">found</th>
-                    <th scope="col">expected</th>
-                  </tr>
-                </thead>
-                <tbody>
-                  <For each={state().errors}>
-                    {(entry) => (
-                      <tr data-testid="scene-error">
-                        <th scope="row">
-                          <code>{entry.path === "" ? "the document" : entry.path}</code>
-                        </th>
-                        <td>{entry.line ?? "–"}</td>
-                        <td>{entry.column ?? "–"}</td>
-                        <td>
-                          <code>{entry.found}</code>
-                        </td>
-                        <td>{entry.expected}</td>
-                      </tr>
-                    )}
-                  </For>
-                </tbody>
-              </table>
-            </Show>
-          </div>
+      <Show when={props.upload.former()}>
+        {(former) => (
+          <p class="answer">
+            {words().records.draft.former(former().file)}{" "}
+            <button type="button" class="quiet" data-testid="draft-back" onClick={() => { props.upload.bringBack(); }}>{words().records.draft.bringBack}</button>
+          </p>
+        )}
+      </Show>
+      <Show when={props.upload.draft()}>
+        {(draft) => (
+          <p class="answer">
+            <a href="#/scenes" data-testid="draft-link">{words().records.draft.short(draft().file)}</a>
+          </p>
         )}
       </Show>
     </div>
   );
-}
-
-function messageOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }
