@@ -10,6 +10,7 @@ mod guards;
 mod links;
 mod machine;
 mod monitoring;
+mod openapi;
 mod person;
 mod priors;
 mod record;

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the report")]
 
 pub mod client;
+pub mod contract;
 pub mod dashboard;
 pub mod process;
 pub mod server;

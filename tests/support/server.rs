@@ -12,9 +12,10 @@ use covr_server::serve::{Reach, Server};
 use reqwest::{Client, Method, Response};
 use serde_json::Value;
 use tempfile::TempDir;
-use tokio::sync::oneshot;
+use tokio::sync::{OnceCell, oneshot};
 use tokio::task::JoinHandle;
 
+use crate::contract::Contract;
 use crate::{HOMED, SOON};
 
 /// A running server.
@@ -24,6 +25,7 @@ pub struct TestServer {
     /// What its handlers share.
     pub app: Arc<App>,
     http: Client,
+    contract: OnceCell<Contract>,
     dir: TempDir,
     end: oneshot::Sender<String>,
     runs: JoinHandle<Result<(), String>>,
@@ -61,7 +63,7 @@ impl TestServer {
             let told = async { told.await.unwrap_or_else(|_| "the test ended".into()) };
             server.run_until(told).await.map_err(|why| format!("{why:#}"))
         });
-        Self { host, app, http: Client::new(), dir, end, runs }
+        Self { host, app, http: Client::new(), contract: OnceCell::new(), dir, end, runs }
     }
 
     /// Shut down, and give the database's folder back.
@@ -95,18 +97,31 @@ impl TestServer {
         request.send().await.unwrap()
     }
 
-    /// A call that succeeds; its JSON.
+    /// A call that succeeds; its JSON, which is as documented.
     pub async fn good(&self, method: &str, path: &str, body: Option<&str>) -> Value {
         let response = self.call(method, path, body).await;
         let status = response.status();
         let text = response.text().await.unwrap();
         assert!(status.is_success(), "{method} {path}: {status} {text}");
-        serde_json::from_str(&text).unwrap_or(Value::String(text))
+        let value = serde_json::from_str(&text).unwrap_or(Value::String(text));
+        self.contract().await.judge(method, path, status.as_u16(), &value);
+        value
     }
 
-    /// A call that is refused with this status; its problem document, whose form is checked.
+    /// A call that is refused with this status; its problem document, whose form is checked and which is as documented.
     pub async fn refused(&self, status: u16, method: &str, path: &str, body: Option<&str>) -> Problem {
-        problem(status, path, self.call(method, path, body).await).await
+        let problem = problem(status, path, self.call(method, path, body).await).await;
+        self.contract().await.judge(method, path, status, &serde_json::to_value(&problem).unwrap());
+        problem
+    }
+
+    /// What the server says of itself.
+    pub async fn contract(&self) -> &Contract {
+        let ask = async || {
+            let document = self.call("GET", "/api/v1/openapi.json", None).await;
+            Contract(document.json().await.unwrap())
+        };
+        self.contract.get_or_init(ask).await
     }
 
     /// Wait for a published state.

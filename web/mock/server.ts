@@ -215,7 +215,8 @@ export class MockServer {
         problem(response, 404, "Not found", `the active scene has no object ${id}`);
         return;
       }
-      this.#changes.unshift({ at: new Date().toISOString(), author, object: id, from: before, to: prior });
+      const scene = { scene_id: this.machine.sceneId, scene_version: this.machine.sceneVersion };
+      this.#changes.unshift({ at: new Date().toISOString(), author, object: id, from: before, to: prior, ...scene });
       this.machine.event("prior_changed", `${author}: ${id} from ${before} to ${prior}`, { author, object: id, from: before, to: prior });
     }
     reply(response, 200, {});

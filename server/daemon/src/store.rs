@@ -19,9 +19,9 @@ use sqlx::sqlite::{
 };
 
 pub use events::{EventFilter, EventPage, NewEvent};
-pub use priors::{PriorChange, StoredPriorChange};
+pub use priors::PriorChange;
 pub use recordings::{Keep, NewChunk, StoredChunk};
-pub use scenes::{SceneVersion, StoredScene, StoredSceneVersion};
+pub use scenes::SceneVersion;
 pub use sessions::{NewSession, SessionEnd, SessionFilter};
 
 /// The database.

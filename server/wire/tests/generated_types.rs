@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use covr_wire::answers::{PriorChange, SceneSummary, SceneVersionSummary};
 use covr_wire::client::{FromClient, ToClient};
 use covr_wire::dashboard::{FromDashboard, ToDashboard};
 use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
@@ -37,6 +38,9 @@ fn generate() -> BTreeMap<String, String> {
     Session::export_all(&config).expect("sessions");
     SessionDetail::export_all(&config).expect("sessions");
     ConfigInForce::export_all(&config).expect("the configuration");
+    SceneSummary::export_all(&config).expect("scenes");
+    SceneVersionSummary::export_all(&config).expect("scenes");
+    PriorChange::export_all(&config).expect("priors");
     SceneDocument::export_all(&config).expect("scenes");
     SceneError::export_all(&config).expect("scene errors");
     FromClient::export_all(&config).expect("client messages");

@@ -1,7 +1,5 @@
-/**
- * The wire's types under one roof. They are generated from the server's sources; nothing here is written by hand
- * except the names of rows that only HTTP answers carry.
- */
+/** The wire's types under one roof. They are generated from the server's sources; nothing here is written by hand
+ * but the answer of the priors' preview. */
 export type {
   Activity,
   Client,
@@ -20,13 +18,17 @@ export type {
   ObjectDocument,
   Outcome,
   Person,
+  PriorChange,
   PropDocument,
   RecordedFrame,
   RequestState,
   RuleState,
   RuleStatus,
   SceneDocument,
+  SceneError,
   SceneInForce,
+  SceneSummary,
+  SceneVersionSummary,
   SeparationTerm,
   SeparationTerms,
   Session,
@@ -38,25 +40,6 @@ export type {
   ToDashboard,
 } from "./generated";
 
-/** A row of `GET /api/v1/scenes`. */
-export interface SceneSummary {
-  readonly id: number;
-  readonly name: string;
-  readonly version: number;
-  readonly author: string;
-  readonly changed_at: string;
-  readonly active: boolean;
-}
-
-/** A row of `GET /api/v1/priors/changes`, newest first. */
-export interface PriorChange {
-  readonly at: string;
-  readonly author: string;
-  readonly object: string;
-  readonly from: number;
-  readonly to: number;
-}
-
 /** The answer of `POST /api/v1/priors/preview`, room frame, m. */
 export interface PriorPreview {
   /** Where the column would be wanted; null when nobody would be served. */
@@ -67,23 +50,4 @@ export interface PriorPreview {
   readonly committed: string | null;
   readonly planned_path_m: readonly (readonly [number, number])[];
   readonly objects: readonly { readonly id: string; readonly weight: number; readonly probability: number; readonly prior: number }[];
-}
-
-/** A row of `GET /api/v1/scenes/{id}/versions`, newest first. */
-export interface SceneVersionSummary {
-  readonly version: number;
-  readonly author: string;
-  readonly created_at: string;
-  readonly active: boolean;
-  /** How many objects it has. */
-  readonly objects: number;
-}
-
-/** One finding of a refused scene. */
-export interface SceneError {
-  readonly path: string;
-  readonly line: number | null;
-  readonly column: number | null;
-  readonly found: string;
-  readonly expected: string;
 }

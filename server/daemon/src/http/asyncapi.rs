@@ -49,7 +49,6 @@ pub fn document(config: &Config) -> Document {
             "title": "CoVR: WebSockets",
             "version": env!("CARGO_PKG_VERSION"),
             "description": ABOUT,
-            "externalDocs": { "description": "HTTP is described apart, by OpenAPI", "url": "/api/v1/openapi.json" },
         },
         "defaultContentType": JSON,
         "servers": {
@@ -213,6 +212,8 @@ const JSON: &str = "application/json";
 
 const ABOUT: &str = "\
 Control server for room-scale encountered-type haptic robots: a gantry carries a column with real props through a VR arena.
+
+HTTP is described apart, by OpenAPI: `/api/v1/openapi.json`.
 
 VR clients send where heads are and hear where the column is; dashboards show the whole state and may ask of the machine.
 Every message is an object with a `type`; a field that a message does not have is refused by its name.

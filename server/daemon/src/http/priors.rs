@@ -7,6 +7,7 @@ use axum::Json;
 use axum::body::Bytes;
 use axum::extract::{Query, State};
 use covr_engine::frames::Floor;
+use covr_wire::answers::PriorChange;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use utoipa::ToSchema;
@@ -17,7 +18,6 @@ use super::input::{Author, Limit, json as read_json};
 use super::problem::{Problem, ProblemItem};
 use crate::app::App;
 use crate::stage::{BadPrior, PriorsRefused, read_priors};
-use crate::store::StoredPriorChange;
 
 /// What became of priors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -128,11 +128,11 @@ async fn preview(State(app): State<Arc<App>>, body: Bytes) -> Result<Json<Priors
 
 /// Who changed which prior when, newest first.
 #[utoipa::path(get, path = "/priors/changes", tag = "priors", params(Limit),
-    responses((status = 200, body = Vec<StoredPriorChange>), (status = 422, body = Problem, description = "Bad limit")))]
+    responses((status = 200, description = "Changes, newest first", body = ref("#/components/schemas/PriorChangeList")), (status = 422, body = Problem, description = "Bad limit")))]
 async fn changes(
     State(app): State<Arc<App>>,
     Query(limit): Query<Limit>,
-) -> Result<Json<Vec<StoredPriorChange>>, Problem> {
+) -> Result<Json<Vec<PriorChange>>, Problem> {
     Ok(Json(app.store.prior_changes(limit.rows()?).await?))
 }
 

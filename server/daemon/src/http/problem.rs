@@ -90,7 +90,8 @@ impl Problem {
         Self::new(StatusCode::SERVICE_UNAVAILABLE, "unavailable", "Unavailable", detail)
     }
 
-    fn of_status(status: StatusCode) -> Self {
+    /// What a bare status means.
+    pub fn of_status(status: StatusCode) -> Self {
         let title = status.canonical_reason().unwrap_or("Error");
         let (kind, detail) = match status {
             StatusCode::NOT_FOUND => ("not-found", "there is nothing at this path"),

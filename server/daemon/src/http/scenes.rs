@@ -7,6 +7,7 @@ use axum::body::Bytes;
 use axum::extract::{Path, Query, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use covr_wire::answers::{SceneSummary, SceneVersionSummary};
 use covr_wire::scene::{SceneError, parse_scene, scene_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -18,7 +19,6 @@ use super::input::Author;
 use super::problem::{Problem, ProblemItem};
 use crate::app::App;
 use crate::stage::ActivationRefused;
-use crate::store::{StoredScene, StoredSceneVersion};
 
 /// Where a scene was stored.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -70,8 +70,8 @@ pub fn routes() -> OpenApiRouter<Arc<App>> {
 }
 
 /// Every scene.
-#[utoipa::path(get, path = "/scenes", tag = "scenes", responses((status = 200, body = Vec<StoredScene>)))]
-async fn list(State(app): State<Arc<App>>) -> Result<Json<Vec<StoredScene>>, Problem> {
+#[utoipa::path(get, path = "/scenes", tag = "scenes", responses((status = 200, description = "Scenes, oldest first", body = ref("#/components/schemas/SceneList"))))]
+async fn list(State(app): State<Arc<App>>) -> Result<Json<Vec<SceneSummary>>, Problem> {
     Ok(Json(app.store.scenes().await?))
 }
 
@@ -118,11 +118,11 @@ async fn read(
 
 /// Every version of a scene, newest first.
 #[utoipa::path(get, path = "/scenes/{id}/versions", tag = "scenes", params(("id" = i64, Path, description = "The store's number")),
-    responses((status = 200, body = Vec<StoredSceneVersion>), (status = 404, description = "No such scene", body = Problem)))]
+    responses((status = 200, description = "Versions, newest first", body = ref("#/components/schemas/SceneVersionList")), (status = 404, description = "No such scene", body = Problem)))]
 async fn versions(
     State(app): State<Arc<App>>,
     Path(id): Path<String>,
-) -> Result<Json<Vec<StoredSceneVersion>>, Problem> {
+) -> Result<Json<Vec<SceneVersionSummary>>, Problem> {
     let versions = app.store.scene_versions(number(&id)?).await?;
     // A scene is stored together with its version 1: one without versions is none.
     if versions.is_empty() { Err(no_scene(&id, None)) } else { Ok(Json(versions)) }

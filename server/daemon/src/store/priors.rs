@@ -1,6 +1,6 @@
 //! Prior changes: who, when, from what, to what, of which object in which scene.
 
-use serde::{Deserialize, Serialize};
+use covr_wire::answers::PriorChange as StoredPriorChange;
 
 use super::{Store, StoreError};
 
@@ -13,27 +13,6 @@ pub struct PriorChange {
     pub from: f64,
     /// After.
     pub to: f64,
-}
-
-/// A change as stored.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, sqlx::FromRow, utoipa::ToSchema)]
-pub struct StoredPriorChange {
-    /// When, RFC 3339.
-    pub at: String,
-    /// Who.
-    pub author: String,
-    /// The scene's id of the object.
-    pub object: String,
-    /// Before, 0 to 1.
-    #[sqlx(rename = "from_prior")]
-    pub from: f64,
-    /// After, 0 to 1.
-    #[sqlx(rename = "to_prior")]
-    pub to: f64,
-    /// The store's number of the scene.
-    pub scene_id: i64,
-    /// And its version.
-    pub scene_version: i64,
 }
 
 impl Store {
@@ -67,13 +46,23 @@ impl Store {
 
     /// The newest changes, newest first.
     pub async fn prior_changes(&self, limit: u32) -> Result<Vec<StoredPriorChange>, StoreError> {
-        Ok(sqlx::query_as(
+        let rows: Vec<(String, String, String, f64, f64, i64, i64)> = sqlx::query_as(
             "SELECT at, author, object, from_prior, to_prior, scene_id, scene_version \
              FROM prior_changes ORDER BY id DESC LIMIT ?",
         )
         .bind(limit)
         .fetch_all(&self.pool)
-        .await?)
+        .await?;
+        let change = |(at, author, object, from, to, scene_id, scene_version)| StoredPriorChange {
+            at,
+            author,
+            object,
+            from,
+            to,
+            scene_id,
+            scene_version,
+        };
+        Ok(rows.into_iter().map(change).collect())
     }
 
     /// The priors changed since the active scene was activated, the newest of each object.

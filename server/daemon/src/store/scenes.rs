@@ -1,42 +1,10 @@
 //! Scenes: each edit is a new version with its author.
 
+use covr_wire::answers::{SceneSummary, SceneVersionSummary};
 use covr_wire::scene::SceneDocument;
-use serde::{Deserialize, Serialize};
 
 use super::{Store, StoreError, unreadable};
 use crate::clock::wall_now;
-
-/// A stored scene, without its document.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, sqlx::FromRow, utoipa::ToSchema)]
-pub struct StoredScene {
-    /// The store's number of the scene.
-    pub id: i64,
-    /// What people call it.
-    pub name: String,
-    /// The newest version.
-    pub version: i64,
-    /// Who wrote the newest version.
-    pub author: String,
-    /// When the newest version was stored, RFC 3339.
-    pub changed_at: String,
-    /// A version of it is active.
-    pub active: bool,
-}
-
-/// A version of a scene, without its document.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, sqlx::FromRow, utoipa::ToSchema)]
-pub struct StoredSceneVersion {
-    /// The version.
-    pub version: i64,
-    /// Who wrote it.
-    pub author: String,
-    /// When it was stored, RFC 3339.
-    pub created_at: String,
-    /// It is the one that is played.
-    pub active: bool,
-    /// How many objects it has.
-    pub objects: i64,
-}
 
 /// One version of a scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,28 +77,45 @@ impl Store {
     }
 
     /// Every scene, oldest first.
-    pub async fn scenes(&self) -> Result<Vec<StoredScene>, StoreError> {
-        Ok(sqlx::query_as(
-            "SELECT s.id, s.name, v.version, v.author, v.created AS changed_at, \
-             s.id IS (SELECT active_scene_id FROM server_state) AS active \
+    pub async fn scenes(&self) -> Result<Vec<SceneSummary>, StoreError> {
+        let rows: Vec<(i64, String, i64, String, String, bool)> = sqlx::query_as(
+            "SELECT s.id, s.name, v.version, v.author, v.created, \
+             s.id IS (SELECT active_scene_id FROM server_state) \
              FROM scenes s JOIN scene_versions v ON v.scene_id = s.id \
              WHERE v.version = (SELECT MAX(version) FROM scene_versions WHERE scene_id = s.id) ORDER BY s.id",
         )
         .fetch_all(&self.pool)
-        .await?)
+        .await?;
+        let summary = |(id, name, version, author, changed_at, active)| SceneSummary {
+            id,
+            name,
+            version,
+            author,
+            changed_at,
+            active,
+        };
+        Ok(rows.into_iter().map(summary).collect())
     }
 
     /// Every version of a scene, newest first; empty when there is no such scene.
-    pub async fn scene_versions(&self, id: i64) -> Result<Vec<StoredSceneVersion>, StoreError> {
-        Ok(sqlx::query_as(
-            "SELECT v.version, v.author, v.created AS created_at, \
-             (v.scene_id IS s.active_scene_id AND v.version IS s.active_scene_version) AS active, \
-             json_array_length(v.document, '$.objects') AS objects \
+    pub async fn scene_versions(&self, id: i64) -> Result<Vec<SceneVersionSummary>, StoreError> {
+        let rows: Vec<(i64, String, String, bool, i64)> = sqlx::query_as(
+            "SELECT v.version, v.author, v.created, \
+             (v.scene_id IS s.active_scene_id AND v.version IS s.active_scene_version), \
+             json_array_length(v.document, '$.objects') \
              FROM scene_versions v, server_state s WHERE v.scene_id = ? ORDER BY v.version DESC",
         )
         .bind(id)
         .fetch_all(&self.pool)
-        .await?)
+        .await?;
+        let summary = |(version, author, created_at, active, objects)| SceneVersionSummary {
+            version,
+            author,
+            created_at,
+            active,
+            objects,
+        };
+        Ok(rows.into_iter().map(summary).collect())
     }
 
     /// A version of a scene, the newest when none is named.

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use anyhow::{Context, bail, ensure};
+use covr_wire::answers::SceneSummary;
 use covr_wire::dashboard::{Mode, Snapshot, ToDashboard};
 use covr_wire::scene::SceneDocument;
 use futures_util::StreamExt;
@@ -10,7 +11,6 @@ use reqwest::{Client, RequestBuilder, Response};
 use tokio::time::Instant;
 
 use crate::http::{Problem, SceneStored};
-use crate::store::StoredScene;
 
 /// The server's HTTP side.
 pub struct Api {
@@ -83,7 +83,7 @@ impl Api {
     /// Store a scene, as a new version of the one of the same name if there is one, and activate it.
     pub async fn show_scene(&self, scene: &SceneDocument, author: &str) -> anyhow::Result<()> {
         let scenes = format!("{}/api/v1/scenes", self.base);
-        let known: Vec<StoredScene> = good(self.http.get(&scenes).send().await?).await?.json().await?;
+        let known: Vec<SceneSummary> = good(self.http.get(&scenes).send().await?).await?.json().await?;
         let id = match known.into_iter().find(|known| known.name == scene.name) {
             None => self.store(self.http.post(&scenes), scene, author).await?,
             Some(known) => {

@@ -1,0 +1,220 @@
+//! What all operations have in common, added to the document in one place: what the layers around the handlers answer, who
+//! asks, names that are unique, and an example of every body, serialised from the types themselves.
+
+use serde_json::{Map, Value, json};
+
+use super::super::problem::{PROBLEM_JSON, Problem};
+use super::samples;
+
+/// Complete a document that has the handlers' own words.
+pub fn complete(document: &mut Value) {
+    let schemas = document["components"]["schemas"].clone();
+    if let Some(paths) = document["paths"].as_object_mut() {
+        paths.extend(by_hand());
+        for (path, item) in paths {
+            for method in METHODS {
+                if let Some(operation) = item.get_mut(method) {
+                    Operation { path, method, schemas: &schemas }.complete(operation);
+                }
+            }
+        }
+    }
+    // The generator fills it from an empty package field; no licence is chosen yet.
+    if let Some(info) = document["info"].as_object_mut() {
+        info.remove("license");
+    }
+    document["components"]["parameters"]["Author"] = json!({
+        "name": "X-Covr-Author",
+        "in": "header",
+        "required": false,
+        "description": "Who asks, for the record: 1 to 64 printable characters, percent-encoded where they are not plain ASCII. \
+            `anonymous` when not given.",
+        "schema": { "type": "string", "minLength": 1 },
+        "example": "J%C3%BCrgen",
+    });
+}
+
+/// Routes that have no handler of the documented kind.
+fn by_hand() -> Map<String, Value> {
+    let document = |what: &str| {
+        json!({ "get": {
+            "tags": ["contract"],
+            "summary": what,
+            "responses": { "200": {
+                "description": "The document",
+                "content": { "application/json": { "schema": { "type": "object" } } },
+            } },
+        } })
+    };
+    let socket = |what: &str, refused: &str| {
+        json!({ "get": {
+            "tags": ["contract"],
+            "summary": what,
+            "description": "A WebSocket; its messages are described at `/api/v1/asyncapi.json`. Refusals are plain text.",
+            "responses": {
+                "101": { "description": "The connection is a WebSocket now" },
+                "400": { "description": refused },
+                "503": { "description": "As many are connected as the server takes" },
+            },
+        } })
+    };
+    let paths = [
+        ("/api/v1/openapi.json", document("This document.")),
+        ("/api/v1/asyncapi.json", document("The WebSockets, as AsyncAPI 3.0.")),
+        (
+            "/ws/v1/client",
+            socket("VR clients.", "No upgrade, or none of the offered subprotocols is spoken here"),
+        ),
+        ("/ws/v1/dashboard", socket("Dashboards.", "No upgrade")),
+    ];
+    paths.into_iter().map(|(path, item)| (path.to_owned(), item)).collect()
+}
+
+struct Operation<'a> {
+    path: &'a str,
+    method: &'a str,
+    schemas: &'a Value,
+}
+
+impl Operation<'_> {
+    fn complete(&self, operation: &mut Value) {
+        operation["operationId"] = self.id().into();
+        if self.takes_author() {
+            let author = json!({ "$ref": "#/components/parameters/Author" });
+            match operation["parameters"].as_array_mut() {
+                Some(parameters) => parameters.push(author),
+                None => operation["parameters"] = json!([author]),
+            }
+        }
+        for (status, words) in self.around(operation) {
+            let answers = &mut operation["responses"];
+            if answers.get(status).is_none() {
+                answers[status] = json!({
+                    "description": words,
+                    "content": { PROBLEM_JSON: { "schema": { "$ref": PROBLEM_SCHEMA } } },
+                });
+            }
+        }
+        if let Some(body) = operation.get_mut("requestBody") {
+            body["required"] = (body["description"] != MAY_BE_EMPTY).into();
+            self.add_examples(&mut body["content"], None);
+        }
+        if let Some(answers) = operation["responses"].as_object_mut() {
+            for (status, answer) in answers {
+                if answer.get("description").is_none_or(|words| words == "") {
+                    answer["description"] = self.what_it_is(answer).into();
+                }
+                let words = answer["description"].as_str().unwrap_or_default().to_owned();
+                if let Some(content) = answer.get_mut("content") {
+                    self.add_examples(content, status.parse().ok().map(|status| (status, words)));
+                }
+            }
+        }
+    }
+
+    /// `get_scenes_id_versions`: method and path, so it is unique and stays while they do.
+    fn id(&self) -> String {
+        let path = self.path.trim_start_matches("/api/v1").trim_start_matches('/');
+        let words = path.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+        std::iter::once(self.method).chain(words).collect::<Vec<_>>().join("_")
+    }
+
+    /// Whatever changes something says who did it.
+    fn takes_author(&self) -> bool {
+        self.method != "get" && !READ_ONLY.contains(&self.path)
+    }
+
+    /// What the layers and extractors answer.
+    fn around(&self, operation: &Value) -> Vec<(&'static str, &'static str)> {
+        let is_stop = self.path == "/api/v1/stop";
+        let in_api = self.path.starts_with("/api/");
+        let mut answers = Vec::new();
+        if !is_stop {
+            answers.push(("403", "From a page of another site, or by a host name that is not this machine"));
+        }
+        if in_api {
+            answers.push(("408", "It took longer than `server.request_timeout_secs`"));
+            answers.push(("500", "The server failed; its log says why"));
+        }
+        if operation.get("requestBody").is_some() && !is_stop {
+            answers.push(("400", "Not JSON, or not the fields that are due"));
+            answers.push(("413", "The body is larger than 4 MiB"));
+        }
+        if operation["parameters"].as_array().is_some_and(|all| all.iter().any(|one| one["in"] == "query")) {
+            answers.push(("400", "A query parameter is not of its type"));
+        }
+        if self.takes_author() && !is_stop {
+            answers.push(("422", "The author is not 1 to 64 printable characters"));
+        }
+        let stored = ["scenes", "priors", "record"].iter().any(|tag| operation["tags"][0] == *tag);
+        if stored && !["/api/v1/scenes/check", "/api/v1/scene.schema.json"].contains(&self.path) {
+            answers.push(("503", "The database or the control loop did not answer"));
+        }
+        answers
+    }
+
+    /// Problems go under their own media type; every body gets an example that it does not have yet.
+    fn add_examples(&self, content: &mut Value, answer: Option<(u16, String)>) {
+        let is_problem = content["application/json"]["schema"]["$ref"] == PROBLEM_SCHEMA;
+        if is_problem
+            && let Some(problem) = content.as_object_mut().and_then(|c| c.remove("application/json"))
+        {
+            content[PROBLEM_JSON] = problem;
+        }
+        let Some(content) = content.as_object_mut() else { return };
+        for (kind, body) in content {
+            if body.get("example").is_some() || body.get("examples").is_some() {
+                continue;
+            }
+            let example = match &answer {
+                Some((status, words)) if kind == PROBLEM_JSON => self.problem(*status, words),
+                _ => self.sample(&body["schema"]),
+            };
+            if let Some(example) = example {
+                body["example"] = example;
+            }
+        }
+    }
+
+    /// The words of the body's own type.
+    fn what_it_is(&self, answer: &Value) -> String {
+        let body = answer["content"].as_object().and_then(|content| content.values().next());
+        let name =
+            body.and_then(|body| body["schema"]["$ref"].as_str()?.rsplit('/').next().map(str::to_owned));
+        let words = name.and_then(|name| self.schemas[name]["description"].as_str().map(str::to_owned));
+        words.unwrap_or_else(|| "Done".into())
+    }
+
+    fn sample(&self, schema: &Value) -> Option<Value> {
+        if let Some(name) = schema["$ref"].as_str().and_then(|path| path.rsplit('/').next()) {
+            let items = &self.schemas[name]["items"];
+            return samples::of(name).or_else(|| Some(json!([self.sample(items)?])));
+        }
+        match schema["type"].as_str()? {
+            "array" => Some(json!([self.sample(&schema["items"])?])),
+            "object" if schema.get("additionalProperties").is_some() => samples::of("Priors"),
+            _ => None,
+        }
+    }
+
+    fn problem(&self, status: u16, words: &str) -> Option<Value> {
+        let kind = match status {
+            400 => Problem::malformed(words, Vec::new()),
+            403 => Problem::forbidden(words),
+            404 => Problem::not_found(words),
+            409 => Problem::refused(words),
+            422 => Problem::invalid(words, vec![samples::problem_item()]),
+            503 => Problem::unavailable(words),
+            other => Problem::of_status(axum::http::StatusCode::from_u16(other).ok()?),
+        };
+        let instance = self.path.replace("{id}", "1").into();
+        serde_json::to_value(Problem { instance, ..kind }).ok()
+    }
+}
+
+const METHODS: [&str; 5] = ["get", "put", "post", "patch", "delete"];
+/// They are no GET because they have a body.
+const READ_ONLY: [&str; 2] = ["/api/v1/scenes/check", "/api/v1/priors/preview"];
+/// What the handlers say of a body that need not be there.
+const MAY_BE_EMPTY: &str = "May be empty";
+const PROBLEM_SCHEMA: &str = "#/components/schemas/Problem";

@@ -1,0 +1,108 @@
+//! One value of every body, by the name of its schema.
+
+use covr_wire::answers::{PriorChange, SceneSummary, SceneVersionSummary};
+use covr_wire::examples;
+use covr_wire::records::{RecordedFrame, SceneInForce, Session, SessionDetail};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::super::{Answered, PriorsChanged, ProblemItem, Readiness};
+use super::super::{SceneActivated, SceneChecked, SceneStored, StopAcknowledged};
+
+/// An example of a schema; none for a name that has none.
+pub fn of(schema: &str) -> Option<Value> {
+    match schema {
+        "Snapshot" => value(examples::snapshot()),
+        "SceneDocument" => value(examples::scene()),
+        "Event" => value(examples::event()),
+        "SceneSummary" => value(SceneSummary {
+            id: 4,
+            name: "Kitchen".into(),
+            version: 2,
+            author: "Ada".into(),
+            changed_at: AT.into(),
+            active: true,
+        }),
+        "SceneVersionSummary" => value(SceneVersionSummary {
+            version: 2,
+            author: "Ada".into(),
+            created_at: AT.into(),
+            active: true,
+            objects: 12,
+        }),
+        "SceneStored" => value(SceneStored { id: 4, version: 1 }),
+        "SceneChecked" => value(SceneChecked { valid: true, name: "Kitchen".into(), objects: 12 }),
+        "SceneActivated" => value(SceneActivated { id: 4, version: 2, detail: "the scene is active".into() }),
+        "PriorChange" => value(PriorChange {
+            at: AT.into(),
+            author: "Ada".into(),
+            object: "kettle".into(),
+            from: 0.5,
+            to: 0.8,
+            scene_id: 4,
+            scene_version: 2,
+        }),
+        "PriorsChanged" => value(PriorsChanged { changed: vec!["kettle".into()] }),
+        "Priors" => Some(json!({ "lamp": 0.8, "door": 0.2 })),
+        "ReasonBody" => Some(json!({ "reason": "the hand is out of the way" })),
+        "Answered" => value(Answered { outcome: "accepted".into(), detail: "homing".into() }),
+        "StopAcknowledged" => value(StopAcknowledged { acknowledged: true, to_drive_micros: 2_130 }),
+        "SessionExport" => value(session_export()),
+        "Readiness" => value(Readiness { ready: true, control_loop: "ready".into(), store: "ready".into() }),
+        _ => None,
+    }
+}
+
+/// One thing that is wrong.
+pub fn problem_item() -> ProblemItem {
+    ProblemItem {
+        path: "$.objects[0].prior".into(),
+        found: "7".into(),
+        expected: "a number from 0 to 1".into(),
+        line: Some(5),
+        column: Some(17),
+    }
+}
+
+/// A session of a minute with one of everything.
+fn session_export() -> Value {
+    let session = Session {
+        id: 12,
+        started_at: AT.into(),
+        ended_at: None,
+        how: None,
+        scene_id: 4,
+        scene_version: 2,
+        scene: "Kitchen".into(),
+        length_secs: Some(63.2),
+        reaches: 4,
+        reaches_served: 4,
+        stops: 1,
+        recorded_frames: 1_890,
+        dropped_frames: 0,
+        recording_bytes: 270_334,
+        recording_removed_at: None,
+    };
+    let in_force = SceneInForce { id: 4, version: 2, from_secs: 0.0 };
+    let detail = SessionDetail {
+        session,
+        persons: vec!["Ada".into()],
+        scenes: vec![in_force],
+        first_micros: Some(7_000_000),
+        last_micros: Some(70_200_000),
+        machine_shape: Some(examples::machine_shape()),
+    };
+    let scene = json!({ "id": 4, "version": 2, "from_secs": 0.0, "document": examples::scene() });
+    json!({
+        "session": detail,
+        "scenes": [scene],
+        "events": [examples::event()],
+        "frames": [RecordedFrame::from(examples::snapshot())],
+    })
+}
+
+fn value(sample: impl Serialize) -> Option<Value> {
+    serde_json::to_value(sample).ok()
+}
+
+const AT: &str = "2026-11-24T10:15:07.250000Z";
