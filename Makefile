@@ -10,6 +10,8 @@ unexport COVR_TRACES
 endif
 # The binary that the browser tests start.
 export COVR_BIN ?= $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/debug/covr
+# The Python that the example script runs with; tests/setup makes it.
+export COVR_PYTHON ?= $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/python/bin/python3
 # Where `make run` listens.
 BIND ?= 127.0.0.1:7878
 

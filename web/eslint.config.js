@@ -2,6 +2,8 @@ import js from "@eslint/js";
 import { defineConfig } from "eslint/config";
 import tseslint from "typescript-eslint";
 
+const EXAMPLE_GLOBALS = ["addEventListener", "document", "location", "Path2D", "performance", "setInterval", "URLSearchParams", "WebSocket"];
+
 export default defineConfig(
   { ignores: ["dist/", "src/api/generated/"] },
   js.configs.recommended,
@@ -28,5 +30,12 @@ export default defineConfig(
   },
   // Runs before everything else, as it stands.
   { files: ["public/*.js"], languageOptions: { sourceType: "script", globals: { document: "readonly", localStorage: "readonly", matchMedia: "readonly" } } },
+  {
+    files: ["examples/*.js"],
+    languageOptions: {
+      sourceType: "script",
+      globals: Object.fromEntries(EXAMPLE_GLOBALS.map((name) => [name, "readonly"])),
+    },
+  },
   { files: ["**/*.js"], extends: [tseslint.configs.disableTypeChecked] },
 );

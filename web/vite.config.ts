@@ -1,4 +1,6 @@
+import { readFileSync, readdirSync } from "node:fs";
 import { fileURLToPath } from "node:url";
+import type { Plugin } from "vite";
 import { defineConfig } from "vitest/config";
 import solid from "vite-plugin-solid";
 import { mockServer } from "./mock/plugin.ts";
@@ -10,7 +12,7 @@ const isTest = process.env["VITEST"] !== undefined;
 const proxy = server === undefined ? {} : { "/api": server, "/ws": { target: server, ws: true } };
 
 export default defineConfig({
-  plugins: [solid(), ...(server === undefined && !isTest ? [mockServer()] : [])],
+  plugins: [solid(), asTheyStand(), ...(server === undefined && !isTest ? [mockServer()] : [])],
   server: { proxy },
   preview: { proxy },
   build: {
@@ -18,6 +20,10 @@ export default defineConfig({
     emptyOutDir: true,
     target: "es2022",
     assetsInlineLimit: 0,
+    // The reference of the API is a page of its own, so that the dashboard does not carry its renderer.
+    rolldownOptions: { input: ["index.html", "docs.html"] },
+    // Swagger UI comes as one piece of 1.7 MB.
+    chunkSizeWarningLimit: 2000,
   },
   test: {
     environment: "node",
@@ -27,3 +33,22 @@ export default defineConfig({
     server: { deps: { inline: [/solid-js/, /@solidjs/] } },
   },
 });
+
+/** Files that are served as they stand: the examples, and the licence of what is embedded. */
+function asTheyStand(): Plugin {
+  return {
+    name: "as-they-stand",
+    apply: "build",
+    generateBundle() {
+      const emit = (fileName: string, from: URL): void => {
+        this.emitFile({ type: "asset", fileName, source: readFileSync(from) });
+      };
+      const examples = new URL("examples/", import.meta.url);
+      for (const name of readdirSync(examples)) emit(`examples/${name}`, new URL(name, examples));
+      const swagger = import.meta.resolve("swagger-ui-dist/package.json");
+      for (const name of ["LICENSE", "NOTICE", "swagger-ui-es-bundle.js.LICENSE.txt"]) {
+        emit(`licences/swagger-ui/${name.replace(/\.txt$/, "")}.txt`, new URL(name, swagger));
+      }
+    },
+  };
+}

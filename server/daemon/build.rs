@@ -70,8 +70,17 @@ fn runs(command: &mut Command) -> bool {
     })
 }
 
-const INPUTS: [&str; 7] =
-    ["src", "public", "index.html", "package.json", "package-lock.json", "vite.config.ts", "tsconfig.json"];
+const INPUTS: [&str; 9] = [
+    "src",
+    "public",
+    "index.html",
+    "package.json",
+    "package-lock.json",
+    "vite.config.ts",
+    "tsconfig.json",
+    "docs.html",
+    "examples",
+];
 
 const PAGE: &str = r#"<!doctype html>
 <html lang="en">

@@ -48,7 +48,6 @@ pub fn router(app: Arc<App>) -> Router {
                 machine::routes()
                     .merge(scenes::routes())
                     .merge(priors::routes())
-                    
                     .merge(sessions::routes())
                     .merge(config::routes())
                     .merge(events::routes()),
@@ -69,6 +68,7 @@ pub fn router(app: Arc<App>) -> Router {
     let sockets = asyncapi::document(&app.config);
     api.route("/api/v1/asyncapi.json", get(move || std::future::ready(sockets.clone().into_response())))
         .route("/api/v1/openapi.json", get(move || std::future::ready(document.clone().into_response())))
+        .route("/api/docs", get(web::docs))
         .route("/api/{*rest}", get(nothing_here).fallback(nothing_here))
         .route("/ws/v1/client", get(ws::client::upgrade))
         .route("/ws/v1/dashboard", get(ws::dashboard::upgrade))

@@ -26,6 +26,14 @@ pub async fn page(method: Method, uri: Uri) -> Response {
     }
 }
 
+/// The rendered reference of the API; without it, the page that says how to build it.
+pub async fn docs() -> Response {
+    match Bundle::get(DOCS) {
+        Some(file) => respond(DOCS, file),
+        None => page(Method::GET, Uri::from_static("/")).await,
+    }
+}
+
 fn respond(path: &str, file: EmbeddedFile) -> Response {
     // Vite puts a hash of the content into the names under assets.
     let cache = if path.starts_with("assets/") { "public, max-age=31536000, immutable" } else { "no-cache" };
@@ -44,6 +52,7 @@ fn respond(path: &str, file: EmbeddedFile) -> Response {
 }
 
 const INDEX: &str = "index.html";
+const DOCS: &str = "docs.html";
 /// Nothing from elsewhere, no inline scripts; inline styles are set by the drawing code.
 const POLICY: &str = "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; \
     style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'none'; frame-ancestors 'none'; form-action 'self'";
