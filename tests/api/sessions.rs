@@ -112,16 +112,23 @@ async fn a_touch_is_served_where_the_column_stands_and_only_there() {
     server.good("PUT", &format!("/api/v1/scenes/{stored}/activate"), None).await;
     server.good("POST", "/api/v1/stop", None).await;
     server.published("at rest", Duration::from_secs(5), |p| p.snapshot.column.velocity.norm() < 1e-3).await;
-    for object in ["near", "far"] {
-        touch(&mut ada, object).await;
+    // On a busy host the last published state can be older than a touch is held against; then it is touched again.
+    let mut touches: Vec<Value> = Vec::new();
+    for tries in 1..=10 {
+        for object in ["near", "far"] {
+            touch(&mut ada, object).await;
+        }
+        touches = eventually("both touches are in the record", || async {
+            let events = server.good("GET", "/api/v1/events?limit=1000", None).await;
+            let touches: Vec<Value> =
+                events.as_array().unwrap().iter().filter(|e| e["kind"] == "touch_began").cloned().collect();
+            (touches.len() == 2 * tries).then_some(touches)
+        })
+        .await;
+        if touches[..2].iter().all(|touch| touch["detail"]["column_off_m"].is_f64()) {
+            break;
+        }
     }
-    let touches = eventually("both touches are in the record", || async {
-        let events = server.good("GET", "/api/v1/events?limit=100", None).await;
-        let touches: Vec<Value> =
-            events.as_array().unwrap().iter().filter(|e| e["kind"] == "touch_began").cloned().collect();
-        (touches.len() == 2).then_some(touches)
-    })
-    .await;
     let detail =
         |object: &str| touches.iter().find(|t| t["detail"]["object"] == object).unwrap()["detail"].clone();
     assert_eq!(detail("near")["served"], true, "{touches:?}");

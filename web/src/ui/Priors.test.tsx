@@ -37,7 +37,7 @@ afterEach(() => {
 function setPriors(priors: Readonly<Record<string, number>>, author: string): void {
   for (const [object, to] of Object.entries(priors)) {
     const from = desk.machine.setPrior(object, to) ?? 0;
-    changes.unshift({ at: new Date().toISOString(), author, object, from, to });
+    changes.unshift({ at: new Date().toISOString(), author, object, from, to, scene_id: 1, scene_version: 1 });
     desk.machine.event("prior_changed", "", { author, object, from, to });
   }
   desk.show(0.1);

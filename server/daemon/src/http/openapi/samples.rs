@@ -43,6 +43,11 @@ pub fn of(schema: &str) -> Option<Value> {
             scene_version: 2,
         }),
         "PriorsChanged" => value(PriorsChanged { changed: vec!["kettle".into()] }),
+        "PriorsPreview" => Some(json!({
+            "target_m": [1.2, 3.4], "serves": 1, "committed": "lamp", "planned_path_m": [[2.0, 2.0], [1.95, 2.08]],
+            "objects": [{ "id": "lamp", "weight": 0.36, "probability": 0.8, "prior": 0.8 },
+                        { "id": "door", "weight": 0.09, "probability": 0.2, "prior": 0.2 }],
+        })),
         "Priors" => Some(json!({ "lamp": 0.8, "door": 0.2 })),
         "ReasonBody" => Some(json!({ "reason": "the hand is out of the way" })),
         "Answered" => value(Answered { outcome: "accepted".into(), detail: "homing".into() }),
