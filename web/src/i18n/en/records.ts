@@ -138,6 +138,7 @@ export const records = {
   },
   replay: {
     banner: (id: number) => `Recording of session ${id}`,
+    facts: (id: number) => `Session ${id}`,
     notLive: "Not live. Mode and stop above are live.",
     back: "All sessions",
     wrongAddress: (part: string) => `There is no session “${part}”.`,

@@ -138,6 +138,7 @@ export const records = {
   },
   replay: {
     banner: (id: number) => `Enregistrement de la séance ${id}`,
+    facts: (id: number) => `Séance ${id}`,
     notLive: "Pas en direct. Le mode et l’arrêt ci-dessus sont en direct.",
     back: "Toutes les séances",
     wrongAddress: (part: string) => `Il n’y a pas de séance « ${part} ».`,

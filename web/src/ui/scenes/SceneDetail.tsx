@@ -171,7 +171,7 @@ export function SceneDetail(props: {
                           class="quiet"
                           data-testid={`version-show-${row.version}`}
                           aria-pressed={shown() === row.version}
-                          aria-label={`${words().records.scenes.show}: ${words().records.scenes.versionWord(row.version)}`}
+                          aria-label={`${shown() === row.version ? words().records.scenes.shown : words().records.scenes.show}: ${words().records.scenes.versionWord(row.version)}`}
                           onClick={() => { setAsking(false); setOutcome(null); setShown(row.version); }}
                         >
                           {shown() === row.version ? words().records.scenes.shown : words().records.scenes.show}

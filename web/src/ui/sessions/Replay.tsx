@@ -236,7 +236,7 @@ export function Replay(props: { readonly session: SessionDetail; readonly startS
 function Facts(props: { readonly session: SessionDetail }): JSX.Element {
   const say = () => words().records;
   return (
-    <section class="panel" aria-label={say().replay.banner(props.session.id)}>
+    <section class="panel" aria-label={say().replay.facts(props.session.id)}>
       <dl class="session-facts" data-testid="session-facts">
         <Fact name={say().sessions.began} value={dayAndTime(props.session.started_at)} />
         <Fact name={say().sessions.lasted} value={span(lengthOf(props.session))} />
@@ -285,7 +285,7 @@ function Now(props: { readonly frame: RecordedFrame | null; readonly scene: Scen
       </dl>
       <Show when={props.frame}>
         {(frame) => (
-          <div class="scrolls now-weights" role="region" tabindex="0" aria-labelledby="now-title">
+          <div class="scrolls now-weights" role="group" tabindex="0" aria-labelledby="now-title">
           <table data-testid="replay-weights">
             <thead>
               <tr>
