@@ -27,9 +27,11 @@ async fn age_jitter_and_loss_of_a_link_are_shown_and_start_afresh_with_a_connect
         message["client_time_micros"] = (message["client_time_micros"].as_i64().unwrap() - shift).into();
         client.say(&message).await;
     }
+    // The age is that of the last second: on a busy host it is gone by the time that the last pose is counted.
+    let aged = shown(&server, "an age", |client| client.pose_age_millis.is_some()).await;
+    assert!(aged.pose_age_millis.is_some_and(|age| (28.0..5_000.0).contains(&age)), "{aged:?}");
     let told = shown(&server, "all poses", |client| client.poses == 39).await;
     assert_eq!(told.loss_percent, Some(2.5));
-    assert!(told.pose_age_millis.is_some_and(|age| (28.0..2_000.0).contains(&age)), "{told:?}");
     assert!(told.jitter_millis.is_some_and(|jitter| (3.0..1_000.0).contains(&jitter)), "{told:?}");
     eventually("the loss among the metrics", || async {
         let text = server.call("GET", "/metrics", None).await.text().await.unwrap();
