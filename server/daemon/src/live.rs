@@ -15,8 +15,8 @@ use crate::control::Published;
 use crate::meters;
 
 /// The wire's snapshot of a published state, with the way ahead.
-pub fn wire_snapshot(app: &App, published: &Published) -> Snapshot {
-    with_path(app, published, path(published))
+pub async fn wire_snapshot(app: &App, published: &Arc<Published>) -> Snapshot {
+    with_path(app, published, path(published).await)
 }
 
 fn with_path(app: &App, published: &Published, planned_path_m: Vec<[f64; 2]>) -> Snapshot {
@@ -33,8 +33,11 @@ fn with_path(app: &App, published: &Published, planned_path_m: Vec<[f64; 2]>) ->
     snapshot
 }
 
-fn path(published: &Published) -> Vec<[f64; 2]> {
-    published.outlook.path().iter().map(|at| [at.x, at.y]).collect()
+/// Milliseconds of arithmetic: not on a thread that serves others. Empty if it was not finished.
+async fn path(published: &Arc<Published>) -> Vec<[f64; 2]> {
+    let published = published.clone();
+    let found = tokio::task::spawn_blocking(move || published.outlook.path());
+    found.await.unwrap_or_default().iter().map(|at| [at.x, at.y]).collect()
 }
 
 /// The way ahead, for all dashboards: looked at as often as its points are apart, and at once in another mode.
@@ -45,12 +48,12 @@ struct Ahead {
 }
 
 impl Ahead {
-    fn path(&mut self, published: &Published) -> Vec<[f64; 2]> {
+    async fn path(&mut self, published: &Arc<Published>) -> Vec<[f64; 2]> {
         let now = (published.snapshot.mode, published.snapshot.at);
         let is_fresh = |(mode, at): (Mode, Time)| mode == now.0 && now.1 - at < POINT_EVERY;
         if !self.looked.is_some_and(is_fresh) {
             self.looked = Some(now);
-            self.path_m = path(published);
+            self.path_m = path(published).await;
         }
         self.path_m.clone()
     }
@@ -64,7 +67,7 @@ pub async fn publish(app: Arc<App>, frames: watch::Sender<Arc<str>>) {
     loop {
         let now = published.borrow_and_update().clone();
         if frames.receiver_count() > 1 {
-            let message = ToDashboard::Snapshot(Box::new(with_path(&app, &now, ahead.path(&now))));
+            let message = ToDashboard::Snapshot(Box::new(with_path(&app, &now, ahead.path(&now).await)));
             match serde_json::to_string(&message) {
                 Ok(text) => {
                     frames.send_replace(text.into());

@@ -57,7 +57,7 @@ pub fn routes() -> OpenApiRouter<Arc<App>> {
 #[utoipa::path(get, path = "/state", tag = "machine",
     responses((status = 200, description = "The snapshot", body = ref("#/components/schemas/Snapshot"))))]
 async fn state(State(app): State<Arc<App>>) -> Response {
-    let snapshot = crate::live::wire_snapshot(&app, &app.control.published());
+    let snapshot = crate::live::wire_snapshot(&app, &app.control.published()).await;
     ([(CACHE_CONTROL, HeaderValue::from_static("no-store"))], Json(snapshot)).into_response()
 }
 

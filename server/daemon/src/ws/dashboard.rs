@@ -55,7 +55,7 @@ async fn write(
     say(&mut sink, &welcome(&app)).await?;
     say(&mut sink, &scene(&app)).await?;
     stage.mark_unchanged();
-    let first: Snapshot = wire_snapshot(&app, &app.control.published());
+    let first: Snapshot = wire_snapshot(&app, &app.control.published()).await;
     say(&mut sink, &ToDashboard::Snapshot(Box::new(first))).await?;
     loop {
         tokio::select! {
