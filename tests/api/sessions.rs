@@ -35,9 +35,8 @@ async fn with_a_session() -> (TestServer, Session) {
     let mut ada = VrClient::greeted(&server.host, "quest", Encoding::Json).await;
     ada.enter("ada").await;
     ada.pose("ada", 3.5, 3.5).await;
-    for _ in 0..40 {
+    while frames(&server, 1, "").await.len() < 30 {
         ada.pose("ada", 3.5, 3.5).await;
-        tokio::time::sleep(Duration::from_millis(33)).await;
     }
     touch(&mut ada, "lamp").await;
     eventually("the touch is in the record", || async {

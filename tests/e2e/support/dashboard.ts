@@ -1,9 +1,7 @@
 /** The dashboard in a real browser, and what its own socket receives. */
-import { mkdir } from "node:fs/promises";
-import { join } from "node:path";
-import { chromium, type Page } from "playwright-core";
-import { onTestFinished } from "vitest";
+import type { Page } from "playwright-core";
 import type { Mode, Snapshot, ToDashboard, WireEvent } from "../../../web/src/api/types";
+import { openBrowser, picture } from "./page";
 import { until } from "./until";
 
 /** One open page. */
@@ -28,19 +26,7 @@ export class Dashboard {
 
   /** Opens the page, until the test ends, and waits until it is live. The tour comes at a first visit alone. */
   static async open(url: string, scheme: "dark" | "light" = "dark", firstVisit = false): Promise<Dashboard> {
-    const browser = await chromium.launch({
-      executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
-      args: [
-        "--no-sandbox",
-        "--disable-gpu",
-        "--disable-quic",
-        "--no-first-run",
-        "--disable-background-networking",
-        "--disable-component-update",
-        "--disable-sync",
-      ],
-    });
-    onTestFinished(() => browser.close());
+    const browser = await openBrowser();
     const page = await browser.newPage({ viewport: { width: 1366, height: 768 }, colorScheme: scheme });
     const dashboard = new Dashboard(page);
     if (!firstVisit) await page.addInitScript(tourWasSeen);
@@ -97,9 +83,7 @@ export class Dashboard {
 
   /** Keeps a picture in `out`. */
   async picture(name: string): Promise<void> {
-    const folder = join(import.meta.dirname, "../out");
-    await mkdir(folder, { recursive: true });
-    await this.page.screenshot({ path: join(folder, `${name}.png`) });
+    await picture(this.page, name);
   }
 
   #take(message: ToDashboard): void {

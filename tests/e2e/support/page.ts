@@ -1,7 +1,7 @@
 /** Any page in a real browser, with what it complains of and whom it asks. */
 import { mkdir } from "node:fs/promises";
 import { join } from "node:path";
-import { chromium, type Page } from "playwright-core";
+import { chromium, type Browser, type Page } from "playwright-core";
 import { onTestFinished } from "vitest";
 
 /** One open page. */
@@ -13,8 +13,8 @@ export interface OpenPage {
   readonly asked: Set<string>;
 }
 
-/** Opens an address until the test ends. */
-export async function openPage(url: string): Promise<OpenPage> {
+/** A browser until the test ends. */
+export async function openBrowser(): Promise<Browser> {
   const browser = await chromium.launch({
     executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
     args: [
@@ -28,6 +28,12 @@ export async function openPage(url: string): Promise<OpenPage> {
     ],
   });
   onTestFinished(() => browser.close());
+  return browser;
+}
+
+/** Opens an address until the test ends. */
+export async function openPage(url: string): Promise<OpenPage> {
+  const browser = await openBrowser();
   const page = await browser.newPage({ viewport: { width: 1366, height: 768 } });
   const complaints: string[] = [];
   const asked = new Set<string>();
