@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use covr_engine::EngineConfig;
 use covr_engine::frames::Floor;
-use covr_engine::intention::RuleName;
+use covr_engine::intention::{IntentionParameters, RuleName};
+use covr_engine::motion::MotionName;
 use covr_engine::observation::{Observation, PersonId, PoseSample};
+use covr_engine::safety::separation::KeptFrom;
 use covr_engine::scene::Scene;
 use covr_engine::time::{Span, Time};
 use covr_gantry::contract::Gantry;
@@ -32,6 +34,9 @@ fn the_column_is_there_before_the_hand_in_at_least_half_of_the_reaches() {
         travel: arena,
         period: Span::from_millis(4),
         intention_rule: RuleName::PaperBest,
+        intention: IntentionParameters::default(),
+        motion: MotionName::Proxy,
+        kept_from: KeptFrom::Everybody,
         v_h_mps: 1.6,
         latched_because: None,
     };

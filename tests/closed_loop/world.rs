@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use covr_engine::EngineConfig;
 use covr_engine::frames::{Floor, Planar, Point};
-use covr_engine::intention::RuleName;
+use covr_engine::intention::{IntentionParameters, RuleName};
 use covr_engine::machine::{AxisLimits, Limits, Travel};
+use covr_engine::motion::MotionName;
+use covr_engine::safety::separation::KeptFrom;
 use covr_engine::scene::{KeepOutShape, KeepOutSpec, ObjectSpec, PropSpec, Scene, SceneSpec, Shape};
 use covr_engine::time::{Span, Time};
 use covr_gantry::contract::Simulated;
@@ -61,6 +63,9 @@ impl World {
             travel,
             period: Span::from_millis(4),
             intention_rule: RuleName::ALL[random.below(RuleName::ALL.len())],
+            intention: IntentionParameters::default(),
+            motion: MotionName::ALL[random.below(MotionName::ALL.len())],
+            kept_from: KeptFrom::Everybody,
             v_h_mps,
             latched_because: None,
         };

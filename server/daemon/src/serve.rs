@@ -8,7 +8,10 @@ use std::time::Duration;
 use anyhow::{Context, bail, ensure};
 use axum::serve::ListenerExt;
 use covr_engine::frames::Floor;
+use covr_engine::intention::IntentionParameters;
 use covr_engine::mode::{Mode, RequestKind};
+use covr_engine::motion::MotionName;
+use covr_engine::safety::separation::KeptFrom;
 use covr_engine::time::Span;
 use covr_engine::{Engine, EngineConfig, Request};
 use covr_gantry::contract::Gantry;
@@ -101,6 +104,9 @@ impl Server {
             travel: config.machine.travel(),
             period: Span::from_secs(period.as_secs_f64()),
             intention_rule: config.people.intention_rule,
+            intention: IntentionParameters::default(),
+            motion: MotionName::Proxy,
+            kept_from: KeptFrom::Everybody,
             v_h_mps: config.people.v_h_mps,
             latched_because: left_over.latched_because,
         };

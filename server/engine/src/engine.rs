@@ -11,21 +11,23 @@ mod view;
 use std::sync::Arc;
 
 use crate::event::{Event, EventKind};
-use crate::intention::RuleName;
+use crate::intention::{IntentionParameters, RuleName};
 use crate::machine::{Drive, Homing, Limits, MachineReport, Travel};
 use crate::mode::Mode;
+use crate::motion::MotionName;
 use crate::observation::{Observation, PersonId};
 use crate::person::Person;
 use crate::safety::governor::Governor;
 use crate::safety::parameters::Parameters;
 use crate::safety::path::State;
-use crate::safety::separation::{Separation, Threat};
+use crate::safety::separation::{KeptFrom, Separation, Threat};
 use crate::safety::supervisor::{Demand, Supervisor, Watched, clears_when};
 use crate::safety::vetted::Vetted;
 use crate::scene::Scene;
 use crate::snapshot::{RuleId, StopCause};
 use crate::time::{Span, Time};
 use following::Following;
+pub use following::{IN_PLACE_M, IN_PLACE_MPS};
 pub use requests::{Answer, Outcome, Request};
 
 /// What the engine is built with. Right once built.
@@ -39,6 +41,12 @@ pub struct EngineConfig {
     pub period: Span,
     /// The intention rule.
     pub intention_rule: RuleName,
+    /// The numbers of the intention rules.
+    pub intention: IntentionParameters,
+    /// How the column is moved to where it is wanted.
+    pub motion: MotionName,
+    /// Whom separation keeps the column from: everybody, but in a study on virtual time.
+    pub kept_from: KeptFrom,
     /// v_h of the separation rule, m/s.
     pub v_h_mps: f64,
     /// Start latched, with this reason: the last run ended in a latched stop.
@@ -94,7 +102,7 @@ impl Engine {
             rests_since: None,
             supervisor: Supervisor::new(parameters),
             governor: None,
-            following: Following::new(config.intention_rule),
+            following: Following::new(config.intention_rule, &config.intention, config.motion),
             events: Vec::new(),
             pending: Vec::new(),
             scene,
@@ -142,7 +150,9 @@ impl Engine {
             person.update_zones(now, &self.parameters);
         }
         self.threats.clear();
-        self.threats.extend(self.persons.iter().filter_map(|p| p.threat(now)));
+        if self.config.kept_from == KeptFrom::Everybody {
+            self.threats.extend(self.persons.iter().filter_map(|p| p.threat(now)));
+        }
         self.supervise(now);
         self.progress_homing(now);
         let config = &self.config;

@@ -2,11 +2,15 @@
 //!
 //! A rule sees distances, angles and priors of one visitor; it never sees the column, and it moves nothing.
 
+mod gaze;
 mod nearest;
 mod paper;
+mod velocity;
 
 use crate::frames::{Floor, Planar, Pose, Room};
 use crate::scene::Scene;
+use crate::time::Time;
+pub use paper::PaperParameters;
 
 /// One object as the visitor has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,10 +19,25 @@ pub struct Sight {
     pub distance_m: f64,
     /// Angle between the view axis and the object, rad; 0 when the view ray hits it.
     pub angle_rad: f64,
+    /// From the head axis to the object's place, over the floor, m.
+    pub offset: Planar,
     /// The scenario prior P, 0 to 1.
     pub prior: f64,
     /// It can be served now.
     pub enabled: bool,
+}
+
+/// One visitor at the moment of a pose: all that a rule may know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View<'a> {
+    /// When the pose was taken.
+    pub taken_at: Time,
+    /// The head, room frame.
+    pub head: Pose<Room>,
+    /// Velocity of the head over the floor, smoothed, m/s.
+    pub velocity: Planar,
+    /// The objects, in the scene's order.
+    pub sights: &'a [Sight],
 }
 
 /// What a rule makes of it.
@@ -34,9 +53,9 @@ pub struct Belief {
 
 /// An intention rule.
 pub trait Rule: std::fmt::Debug + Send + Sync {
-    /// Weigh the objects of one visitor; `belief` is reused from pose to pose. To weigh the same sights again changes
-    /// neither the rule nor the belief: time passes for people, who move, and not for rules.
-    fn weigh(&mut self, sights: &[Sight], belief: &mut Belief);
+    /// Weigh the objects of one visitor; `belief` is reused from pose to pose. To weigh the same view again changes
+    /// neither the rule nor the belief.
+    fn weigh(&mut self, view: &View<'_>, belief: &mut Belief);
 
     /// A copy with what it remembers.
     fn boxed(&self) -> Box<dyn Rule>;
@@ -61,12 +80,30 @@ pub enum RuleName {
     PaperHeld,
     /// The nearest surface.
     Nearest,
+    /// The smallest angle from the view axis.
+    Gaze,
+    /// The nearest to where the head will be if it goes on as it does.
+    ConstantVelocity,
+}
+
+/// The numbers of the rules.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct IntentionParameters {
+    /// Of the paper's rule, in all its readings.
+    pub paper: PaperParameters,
 }
 
 impl RuleName {
     /// Every rule.
-    pub const ALL: [Self; 5] =
-        [Self::Paper, Self::PaperLiteral, Self::PaperBest, Self::PaperHeld, Self::Nearest];
+    pub const ALL: [Self; 7] = [
+        Self::Paper,
+        Self::PaperLiteral,
+        Self::PaperBest,
+        Self::PaperHeld,
+        Self::Nearest,
+        Self::Gaze,
+        Self::ConstantVelocity,
+    ];
 
     /// Its name in configuration, tables and JSON.
     pub const fn name(self) -> &'static str {
@@ -76,6 +113,8 @@ impl RuleName {
             Self::PaperBest => "paper-best",
             Self::PaperHeld => "paper-held",
             Self::Nearest => "nearest",
+            Self::Gaze => "gaze",
+            Self::ConstantVelocity => "constant-velocity",
         }
     }
 
@@ -85,13 +124,16 @@ impl RuleName {
     }
 
     /// A fresh rule for one visitor.
-    pub fn rule(self) -> Box<dyn Rule> {
+    pub fn rule(self, parameters: &IntentionParameters) -> Box<dyn Rule> {
+        let paper = |commitment| Box::new(paper::Paper::new(commitment, parameters.paper));
         match self {
-            Self::Paper => Box::new(paper::Paper::new(paper::Commitment::Mean)),
-            Self::PaperLiteral => Box::new(paper::Paper::new(paper::Commitment::Literal)),
-            Self::PaperBest => Box::new(paper::Paper::new(paper::Commitment::Best)),
-            Self::PaperHeld => Box::new(paper::Paper::new(paper::Commitment::Held)),
+            Self::Paper => paper(paper::Commitment::Mean),
+            Self::PaperLiteral => paper(paper::Commitment::Literal),
+            Self::PaperBest => paper(paper::Commitment::Best),
+            Self::PaperHeld => paper(paper::Commitment::Held),
             Self::Nearest => Box::new(nearest::Nearest),
+            Self::Gaze => Box::new(gaze::Gaze),
+            Self::ConstantVelocity => Box::new(velocity::ConstantVelocity),
         }
     }
 }
@@ -103,6 +145,7 @@ pub fn sights(scene: &Scene, priors: &[f64], head: &Pose<Room>, out: &mut Vec<Si
         |((object, spec), prior)| Sight {
             distance_m: object.distance_m(&head.position),
             angle_rad: object.angle_rad(head),
+            offset: spec.position.floor() - head.position.floor(),
             prior: *prior,
             enabled: spec.enabled,
         },
@@ -126,6 +169,16 @@ impl Belief {
         self.weights.iter().sum()
     }
 
+    /// Commit to the object of the greatest weight alone, among equals to the first of the scene; to none without any
+    /// weight.
+    fn commit_to_best(&mut self) {
+        let count = self.weights.len();
+        let best = (0..count).rev().max_by(|a, b| self.weights[*a].total_cmp(&self.weights[*b]));
+        self.committed = best.filter(|i| self.weights[*i] > 0.0);
+        let committed = self.committed;
+        self.share_by(count, |i| if committed == Some(i) { 1.0 } else { 0.0 });
+    }
+
     /// Give every object the share `share(i)`, scaled to sum to 1.
     fn share_by(&mut self, count: usize, share: impl Fn(usize) -> f64) {
         self.shares.clear();
@@ -140,13 +193,33 @@ impl Belief {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frames::Point;
     use proptest::prelude::*;
+
+    /// A head at (2, 2) that walks along +x.
+    pub(super) fn view(at_millis: i64, sights: &[Sight]) -> View<'_> {
+        let position = Point::new(2.0, 2.0, 1.6);
+        View {
+            taken_at: Time::from_micros(at_millis * 1000),
+            head: Pose { position, orientation: nalgebra::UnitQuaternion::identity() },
+            velocity: Planar::new(0.8, 0.0),
+            sights,
+        }
+    }
+
+    /// An object this far away and this far off the view axis.
+    pub(super) fn sight(distance_m: f64, angle_deg: f64, prior: f64) -> Sight {
+        let angle_rad = f64::to_radians(angle_deg);
+        let offset = Planar::new(distance_m, 0.0).turned(angle_rad);
+        Sight { distance_m, angle_rad, offset, prior, enabled: true }
+    }
 
     fn sights(count: usize) -> impl Strategy<Value = Vec<Sight>> {
         let sight = (0.0..3.0f64, 0.0..1.2f64, 0.0..1.0f64, prop::bool::weighted(0.9));
         let sight = sight.prop_map(|(distance_m, angle_rad, prior, enabled)| Sight {
             distance_m,
             angle_rad,
+            offset: Planar::new(distance_m, 0.0).turned(angle_rad),
             prior,
             enabled,
         });
@@ -158,13 +231,15 @@ mod tests {
         fn a_rule_that_sees_the_same_again_finds_the_same(
             seen in (1..12usize).prop_flat_map(|count| prop::collection::vec(sights(count), 1..6)),
         ) {
+            let parameters = IntentionParameters::default();
             for name in RuleName::ALL {
-                let (mut once, mut often) = (name.rule(), name.rule());
+                let (mut once, mut often) = (name.rule(&parameters), name.rule(&parameters));
                 let (mut belief, mut of_often) = (Belief::default(), Belief::default());
-                for sights in &seen {
-                    once.weigh(sights, &mut belief);
+                for (k, sights) in seen.iter().enumerate() {
+                    let view = view(k as i64 * 13, sights);
+                    once.weigh(&view, &mut belief);
                     for _ in 0..3 {
-                        often.weigh(sights, &mut of_often);
+                        often.weigh(&view, &mut of_often);
                     }
                     prop_assert_eq!(&belief, &of_often, "{}", name.name());
                 }

@@ -9,6 +9,30 @@ use crate::frames::{Floor, Planar};
 use crate::machine::{AxisLimits, Limits, Travel};
 use crate::safety::separation::Threat;
 
+/// The ways to move that can be chosen, by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MotionName {
+    /// The paper's spring, damper and cone.
+    Proxy,
+}
+
+impl MotionName {
+    /// Every motion.
+    pub const ALL: [Self; 1] = [Self::Proxy];
+
+    /// Its name in configuration, tables and JSON.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Proxy => "proxy",
+        }
+    }
+
+    /// The motion of this name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|motion| motion.name() == name)
+    }
+}
+
 /// Velocities to try, best first.
 #[derive(Debug, Clone, Default)]
 pub struct Proposals {

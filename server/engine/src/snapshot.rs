@@ -29,6 +29,8 @@ pub struct Snapshot {
     pub objects: Vec<ObjectState>,
     /// The intention rule in use, by name.
     pub intention_rule: &'static str,
+    /// How the column is moved, by name.
+    pub motion: &'static str,
 }
 
 /// A safety rule's id, R1 to R16.

@@ -9,10 +9,12 @@ use std::sync::Arc;
 
 use covr_engine::engine::{Engine, EngineConfig, Outcome, Request};
 use covr_engine::frames::{Floor, Point};
-use covr_engine::intention::RuleName;
+use covr_engine::intention::{IntentionParameters, RuleName};
 use covr_engine::machine::{Limits, Travel};
 use covr_engine::mode::{Mode, RequestKind};
+use covr_engine::motion::MotionName;
 use covr_engine::observation::{Observation, PersonId, PoseSample};
+use covr_engine::safety::separation::KeptFrom;
 use covr_engine::safety::vetted::Vetted;
 use covr_engine::scene::{ObjectSpec, Scene, SceneProblem, SceneSpec, Shape};
 use covr_engine::time::{Span, Time};
@@ -107,6 +109,9 @@ impl Workload {
             travel: ROOM,
             period: PERIOD,
             intention_rule: RuleName::PaperBest,
+            intention: IntentionParameters::default(),
+            motion: MotionName::Proxy,
+            kept_from: KeptFrom::Everybody,
             v_h_mps: 1.6,
             latched_because: None,
         };

@@ -116,5 +116,6 @@ pub(crate) fn snapshot() -> Snapshot {
         persons: vec![person(3, Some(looking)), person(8, None)],
         objects: vec![object("kettle", 0.4, Some(1.5)), object("lamp", 0.6, None)],
         intention_rule: "paper",
+        motion: "proxy",
     }
 }

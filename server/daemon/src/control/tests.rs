@@ -6,9 +6,11 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use covr_engine::frames::{Floor, Planar};
-use covr_engine::intention::RuleName;
+use covr_engine::intention::{IntentionParameters, RuleName};
 use covr_engine::machine::{Drive, Homing, Limits, MachineReport, Travel};
 use covr_engine::mode::{Mode, RequestKind};
+use covr_engine::motion::MotionName;
+use covr_engine::safety::separation::KeptFrom;
 use covr_engine::safety::vetted::{Action, Vetted};
 use covr_engine::time::{Span, Time};
 use covr_engine::{Engine, EngineConfig, Request};
@@ -96,6 +98,9 @@ fn start() -> Stage {
         travel: puppet.travel(),
         period: Span::from_millis(4),
         intention_rule: RuleName::Paper,
+        intention: IntentionParameters::default(),
+        motion: MotionName::Proxy,
+        kept_from: KeptFrom::Everybody,
         v_h_mps: 1.6,
         latched_because: None,
     };

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use covr_engine::engine::{IN_PLACE_M, IN_PLACE_MPS};
 use covr_engine::frames::{Floor, Planar};
 use covr_engine::scene::Scene;
 use covr_engine::time::{Span, Time};
@@ -75,7 +76,3 @@ impl Past {
 /// Four seconds at the fastest publishing.
 const MOST_STATES: usize = 512;
 const FARTHEST: Span = Span::from_millis(250);
-/// Nearer than this the column is in place, as in the engine's `served`, m.
-const IN_PLACE_M: f64 = 0.1;
-/// And slower than this, m/s.
-const IN_PLACE_MPS: f64 = 0.05;

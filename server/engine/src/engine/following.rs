@@ -2,9 +2,9 @@
 
 use crate::event::EventKind;
 use crate::frames::{Floor, Planar};
-use crate::intention::{self, Belief, Rule, RuleName, Sight};
-use crate::motion::Proposals;
+use crate::intention::{self, Belief, IntentionParameters, Rule, RuleName, Sight, View};
 use crate::motion::proxy::{Bump, Proxy};
+use crate::motion::{MotionName, Proposals};
 use crate::observation::PersonId;
 use crate::person::Person;
 use crate::safety::governor::Governor;
@@ -40,6 +40,9 @@ struct Visitor {
 #[derive(Debug, Clone)]
 pub struct Following {
     rule: RuleName,
+    /// As it begins for everybody.
+    fresh: Box<dyn Rule>,
+    motion: MotionName,
     visitors: Vec<Visitor>,
     /// The priors that the beliefs are about.
     believed_priors: Vec<f64>,
@@ -57,9 +60,11 @@ pub struct Following {
 }
 
 impl Following {
-    pub fn new(rule: RuleName) -> Self {
+    pub fn new(rule: RuleName, parameters: &IntentionParameters, motion: MotionName) -> Self {
         Self {
             rule,
+            fresh: rule.rule(parameters),
+            motion,
             visitors: Vec::new(),
             believed_priors: Vec::new(),
             serves: None,
@@ -109,7 +114,7 @@ impl Following {
                 continue;
             };
             let index = self.visitors.iter().position(|v| v.person == person.id()).unwrap_or_else(|| {
-                let rule = self.rule.rule();
+                let rule = self.fresh.clone();
                 let (sights, belief) = (Vec::new(), Belief::default());
                 self.visitors.push(Visitor { person: person.id(), rule, sights, belief, believed_at: None });
                 self.visitors.len() - 1
@@ -117,7 +122,13 @@ impl Following {
             let visitor = &mut self.visitors[index];
             if visitor.believed_at != Some(sample.taken_at) {
                 intention::sights(scene, priors, &sample.pose, &mut visitor.sights);
-                visitor.rule.weigh(&visitor.sights, &mut visitor.belief);
+                let view = View {
+                    taken_at: sample.taken_at,
+                    head: sample.pose,
+                    velocity: person.velocity(),
+                    sights: &visitor.sights,
+                };
+                visitor.rule.weigh(&view, &mut visitor.belief);
                 visitor.believed_at = Some(sample.taken_at);
             }
         }
@@ -263,6 +274,10 @@ impl Following {
         self.rule
     }
 
+    pub fn motion(&self) -> MotionName {
+        self.motion
+    }
+
     /// The belief about the served visitor.
     pub fn belief(&self) -> Option<&Belief> {
         self.served_visitor().map(|v| &v.belief)
@@ -306,9 +321,10 @@ const HELD_FOR: Span = Span::from_millis(200);
 /// Closer and slower than this there is nothing to correct: m, m/s.
 const SETTLED_M: f64 = 0.001;
 const SETTLED_MPS: f64 = 0.002;
-/// Success as the evaluation has it: m, m/s.
-pub(super) const IN_PLACE_M: f64 = 0.1;
-pub(super) const IN_PLACE_MPS: f64 = 0.05;
+/// Success as the evaluation has it: nearer than this the column is in place, m.
+pub const IN_PLACE_M: f64 = 0.1;
+/// And slower than this, m/s.
+pub const IN_PLACE_MPS: f64 = 0.05;
 /// An arm's length from the head to the surface, m.
 const WITHIN_REACH_M: f64 = 0.75;
 

@@ -43,6 +43,7 @@ impl Engine {
             persons: self.persons.iter().map(|p| self.person_state(p, now)).collect(),
             objects: self.objects(),
             intention_rule: self.following.rule().name(),
+            motion: self.following.motion().name(),
         }
     }
 

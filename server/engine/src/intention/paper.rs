@@ -3,7 +3,7 @@
 //! `W_i = w D(d) + (1 - w) O(theta)`, `D = 1 / (1 + d)`, `O = exp(cos(theta) - 1)`, then `W_i` times the prior `P_i`.
 //! Its footnote rounds `W_i > 0.8` to 1. The test is made on the unmultiplied W; the prior comes afterwards.
 
-use super::{Belief, Rule, Sight};
+use super::{Belief, Rule, Sight, View};
 
 /// What happens once some W exceeds the threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,23 +18,41 @@ pub enum Commitment {
     Held,
 }
 
+/// The numbers of the paper's rule.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PaperParameters {
+    /// w: the share of distance in a weight, the rest being that of direction.
+    pub distance_share: f64,
+    /// A weight above this is a commitment.
+    pub threshold: f64,
+}
+
+impl Default for PaperParameters {
+    /// The optimum that the paper reports, and its footnote's threshold.
+    fn default() -> Self {
+        Self { distance_share: 0.175, threshold: 0.8 }
+    }
+}
+
 /// The paper's rule for one visitor.
 #[derive(Debug, Clone)]
 pub struct Paper {
     commitment: Commitment,
+    parameters: PaperParameters,
     held: Option<usize>,
     unmultiplied: Vec<f64>,
 }
 
 impl Paper {
     /// Nothing seen yet.
-    pub const fn new(commitment: Commitment) -> Self {
-        Self { commitment, held: None, unmultiplied: Vec::new() }
+    pub const fn new(commitment: Commitment, parameters: PaperParameters) -> Self {
+        Self { commitment, parameters, held: None, unmultiplied: Vec::new() }
     }
 
     /// The object that stands alone, in the readings where one does.
     fn alone(&mut self, sights: &[Sight], belief: &Belief) -> Option<usize> {
-        let candidate = |i: &usize| self.unmultiplied[*i] > THRESHOLD && sights[*i].prior > 0.0;
+        let threshold = self.parameters.threshold;
+        let candidate = |i: &usize| self.unmultiplied[*i] > threshold && sights[*i].prior > 0.0;
         if self.commitment == Commitment::Held
             && let Some(held) = self.held.filter(|i| *i < sights.len()).filter(candidate)
         {
@@ -55,13 +73,17 @@ impl Rule for Paper {
         Box::new(self.clone())
     }
 
-    fn weigh(&mut self, sights: &[Sight], belief: &mut Belief) {
+    fn weigh(&mut self, view: &View<'_>, belief: &mut Belief) {
+        let sights = view.sights;
+        let PaperParameters { distance_share, threshold } = self.parameters;
+        let unmultiplied = |s: &Sight| {
+            if s.enabled { weight(distance_share, s.distance_m, s.angle_rad) } else { 0.0 }
+        };
         self.unmultiplied.clear();
-        self.unmultiplied
-            .extend(sights.iter().map(|s| if s.enabled { weight(s.distance_m, s.angle_rad) } else { 0.0 }));
+        self.unmultiplied.extend(sights.iter().map(unmultiplied));
         belief.weights.clear();
         belief.weights.extend(self.unmultiplied.iter().zip(sights).map(|(w, s)| w * s.prior));
-        let over = |i: usize| self.unmultiplied[i] > THRESHOLD && sights[i].prior > 0.0;
+        let over = |i: usize| self.unmultiplied[i] > threshold && sights[i].prior > 0.0;
         let any_over = (0..sights.len()).any(over);
         let count = sights.len();
         match self.commitment {
@@ -94,34 +116,28 @@ impl Rule for Paper {
 }
 
 /// Eq. 2 to 4 without the prior.
-fn weight(distance_m: f64, angle_rad: f64) -> f64 {
-    W * (1.0 / (1.0 + distance_m)) + (1.0 - W) * (angle_rad.cos() - 1.0).exp()
+fn weight(distance_share: f64, distance_m: f64, angle_rad: f64) -> f64 {
+    distance_share / (1.0 + distance_m) + (1.0 - distance_share) * (angle_rad.cos() - 1.0).exp()
 }
-
-/// w, the weight of distance: the paper's optimum over its 300 trials.
-const W: f64 = 0.175;
-/// The footnote's threshold.
-const THRESHOLD: f64 = 0.8;
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::{sight, view};
     use super::*;
-
-    fn sight(distance_m: f64, angle_deg: f64, prior: f64) -> Sight {
-        Sight { distance_m, angle_rad: f64::to_radians(angle_deg), prior, enabled: true }
-    }
 
     fn weighed(commitment: Commitment, sights: &[Sight]) -> Belief {
         let mut belief = Belief::default();
-        Paper::new(commitment).weigh(sights, &mut belief);
+        Paper::new(commitment, PaperParameters::default()).weigh(&view(0, sights), &mut belief);
         belief
     }
 
     #[test]
     fn the_weight_is_the_papers() {
         // Looking at it from 1 m: 0.175 / 2 + 0.825; with the back to it: 0.0875 + 0.825 e^-2.
-        assert!((weight(1.0, 0.0) - 0.9125).abs() < 1e-12);
-        assert!((weight(1.0, std::f64::consts::PI) - (0.0875 + 0.825 * (-2.0_f64).exp())).abs() < 1e-12);
+        assert!((weight(0.175, 1.0, 0.0) - 0.9125).abs() < 1e-12);
+        assert!(
+            (weight(0.175, 1.0, std::f64::consts::PI) - (0.0875 + 0.825 * (-2.0_f64).exp())).abs() < 1e-12
+        );
     }
 
     #[test]
@@ -142,12 +158,12 @@ mod tests {
 
     #[test]
     fn held_keeps_its_object_until_its_weight_falls_to_the_threshold() {
-        let mut rule = Paper::new(Commitment::Held);
+        let mut rule = Paper::new(Commitment::Held, PaperParameters::default());
         let mut belief = Belief::default();
-        rule.weigh(&[sight(0.5, 0.0, 1.0), sight(0.5, 15.0, 1.0)], &mut belief);
-        rule.weigh(&[sight(0.5, 15.0, 1.0), sight(0.5, 0.0, 1.0)], &mut belief);
+        rule.weigh(&view(0, &[sight(0.5, 0.0, 1.0), sight(0.5, 15.0, 1.0)]), &mut belief);
+        rule.weigh(&view(0, &[sight(0.5, 15.0, 1.0), sight(0.5, 0.0, 1.0)]), &mut belief);
         assert_eq!(belief.committed, Some(0));
-        rule.weigh(&[sight(0.5, 60.0, 1.0), sight(0.5, 0.0, 1.0)], &mut belief);
+        rule.weigh(&view(0, &[sight(0.5, 60.0, 1.0), sight(0.5, 0.0, 1.0)]), &mut belief);
         assert_eq!(belief.committed, Some(1));
     }
 

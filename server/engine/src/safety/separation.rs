@@ -22,6 +22,26 @@ use crate::safety::path::{BrakePath, State};
 use crate::scene::Scene;
 pub use terms::{Term, Terms};
 
+/// Whom separation keeps the column from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KeptFrom {
+    /// Everybody in the arena.
+    Everybody,
+    /// Nobody: the arena, its people and the machine are all simulated. For studies that ask what the rule costs.
+    Nobody(WhollySimulated),
+}
+
+/// The word of a caller that nothing real moves. No shell of a machine has a reason to say it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WhollySimulated(());
+
+impl WhollySimulated {
+    /// Said by replays on virtual time alone; a test holds the server to never naming it.
+    pub const fn by_a_replay_on_virtual_time() -> Self {
+        Self(())
+    }
+}
+
 /// A person as this rule sees them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Threat {

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use covr_engine::engine::EngineConfig;
 use covr_engine::event::EventKind;
 use covr_engine::frames::{Floor, Planar};
-use covr_engine::intention::RuleName;
+use covr_engine::intention::{IntentionParameters, RuleName};
 use covr_engine::machine::Travel;
 use covr_engine::mode::Mode;
+use covr_engine::motion::MotionName;
 use covr_engine::observation::{Observation, PersonId};
+use covr_engine::safety::separation::KeptFrom;
 use covr_engine::safety::vetted::{Action, Vetted};
 use covr_engine::scene::{ObjectSpec, Scene, SceneProblem, SceneSpec, Shape};
 use covr_engine::time::{Span, Time};
@@ -130,6 +132,9 @@ impl ReachTrial<'_> {
             travel: machine.travel(),
             period: PERIOD,
             intention_rule: self.rule,
+            intention: IntentionParameters::default(),
+            motion: MotionName::Proxy,
+            kept_from: KeptFrom::Everybody,
             v_h_mps: self.v_h_mps,
             latched_because: None,
         };
