@@ -182,7 +182,8 @@ impl Planar {
 
     /// Length.
     pub fn norm(self) -> f64 {
-        self.x.hypot(self.y)
+        // Not `hypot`: rooms are metres wide, so no square over- or underflows, and this is asked in every look ahead.
+        self.dot(self).sqrt()
     }
 
     /// Scalar product.
