@@ -48,6 +48,11 @@ impl IdealMachine {
         }
     }
 
+    /// Homed and at rest at `place`, its drive on.
+    pub fn standing(limits: Limits, travel: Travel, place: Floor) -> Self {
+        Self { drive: Drive::On, homing: Homing::Homed, ..Self::new(limits, travel, place) }
+    }
+
     fn advance(&mut self, now: Time) {
         self.now = now;
         if let Motion::Following { since, setpoint } = self.motion {

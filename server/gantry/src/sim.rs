@@ -80,6 +80,17 @@ impl SimulatedMachine {
         })
     }
 
+    /// A machine that was homed, drove to the start of its parameters and has held there since: its drive is on and
+    /// its motors carry nothing. Homing leaves the reported place up to a few counts off; here it is exact.
+    pub fn standing(parameters: MachineParameters) -> Result<Self, ParameterProblem> {
+        let mut machine = Self::new(parameters)?;
+        let outside_m = parameters.homing.switch_outside_m;
+        let corner = parameters.travel.min - parameters.start;
+        machine.controller.stand(0.0, [corner.x - outside_m, corner.y - outside_m]);
+        machine.last_report = machine.report(Time::ZERO);
+        Ok(machine)
+    }
+
     /// A force from outside on the column from now on, N: somebody leans on it.
     pub fn push(&mut self, force_n: Planar) {
         self.plants[0].push_n = force_n.x;

@@ -53,6 +53,14 @@ impl Controller {
         }
     }
 
+    /// Homed, its switches at these places since power-on, and holding both axes at `at_m`.
+    pub(super) fn stand(&mut self, at_m: f64, switches_m: [f64; 2]) {
+        self.drive = Drive::On;
+        self.homing = Homing::Homed;
+        self.axes.iter_mut().for_each(|axis| axis.hold(at_m));
+        self.sequences = switches_m.map(HomingAxis::done);
+    }
+
     pub(super) fn take(&mut self, packet: Packet) {
         self.silent_ticks = 0;
         let is_home = packet == Packet::Home;

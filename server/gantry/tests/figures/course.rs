@@ -49,6 +49,13 @@ impl Course {
         course
     }
 
+    /// Built homed and standing at `place`.
+    pub fn standing_at(place: Floor) -> Self {
+        let parameters = MachineParameters { start: place, ..MachineParameters::paper(ARENA) };
+        let machine = SimulatedMachine::standing(parameters).unwrap();
+        Self { machine, now: Time::from_micros(1_000_000) }
+    }
+
     /// One period under `action`: what is read at its end.
     pub fn step(&mut self, action: Action) -> (Result<(), NotTaken>, Reading) {
         self.step_for(action, PERIOD)

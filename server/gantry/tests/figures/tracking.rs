@@ -191,3 +191,20 @@ fn setpoints_at_75_hz_are_followed_too() {
     );
     assert!(error_m < 0.010, "{error_m} m");
 }
+
+#[test]
+fn a_machine_built_standing_moves_as_one_that_was_homed_and_driven_there() {
+    let (start, place) = (Floor::new(1.0, 2.5), Floor::new(3.0, 1.0));
+    let ways = [Course::homed_at(start), Course::standing_at(start)].map(|mut course| {
+        let begins = course.machine.read(course.now).report;
+        assert!(begins.position.distance_m(start) < 0.001 && begins.velocity == Planar::ZERO, "{begins:?}");
+        let mut way = Vec::new();
+        course.travel_to(place, |seen| way.push((seen.position, seen.reading.report.position)));
+        way
+    });
+    assert_eq!(ways[0].len(), ways[1].len());
+    for (homed, standing) in ways[0].iter().zip(&ways[1]) {
+        assert!(homed.0.distance_m(standing.0) < 0.002, "{homed:?} {standing:?}");
+        assert!(standing.0.distance_m(standing.1) < 0.002, "it reports where it is: {standing:?}");
+    }
+}
