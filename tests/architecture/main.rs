@@ -136,3 +136,16 @@ fn only_safety_makes_commands() {
         }
     }
 }
+
+#[test]
+fn the_server_never_says_that_everything_is_simulated() {
+    let study = sources(&top().join("server/study/src"));
+    assert!(study.iter().any(|(_, text)| text.contains("WhollySimulated")), "replays say it");
+    for room in ["daemon", "gantry", "wire"] {
+        for (path, text) in sources(&top().join("server").join(room).join("src")) {
+            for name in ["WhollySimulated", "KeptFrom::Nobody", "kept_from()"] {
+                assert!(!text.contains(name), "{} names {name}", path.display());
+            }
+        }
+    }
+}

@@ -30,7 +30,7 @@ pub enum Command {
     /// Play a person as a VR client: recorded with --trace, else made up.
     Visitor(Visitor),
     /// Replay recorded people on virtual time and say how often the column was there before the hand.
-    Evaluate(Evaluate),
+    Evaluate(Box<Evaluate>),
     /// Ask a running server whether it is ready; exit code 2 if it is not.
     Health(Health),
     /// Print every configuration key with its default and its meaning.

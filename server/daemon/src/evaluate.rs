@@ -6,11 +6,13 @@ use std::time::Instant;
 
 use anyhow::Context;
 use clap::Args;
-use covr_engine::intention::RuleName;
+use covr_engine::motion::MotionName;
+use covr_engine::time::Span;
 use covr_study::evaluate::{
-    Draw, Evaluation, MachineKind, Objects, Plan, PlanProblem, Prior, RuleChoice, Subjects, csv, evaluate,
-    json, terminal,
+    Conditions, Draw, Evaluation, MachineKind, Objects, Plan, PlanProblem, Prior, RuleChoice,
+    SeparationChoice, Subjects, csv, evaluate, json, motion, terminal,
 };
+use covr_study::replay::TrackingNoise;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::config::Config;
@@ -24,6 +26,12 @@ pub struct Evaluate {
     /// Rules by name; every rule when not given.
     #[arg(long, value_delimiter = ',', value_parser = RuleChoice::parse)]
     pub rules: Vec<RuleChoice>,
+    /// Motions by name; when not given, the default one, and every one for the paper's rules.
+    #[arg(long, value_delimiter = ',', value_parser = motion)]
+    pub motion: Vec<MotionName>,
+    /// With the separation rule (on), without it (off).
+    #[arg(long, value_delimiter = ',', default_value = "on", value_parser = SeparationChoice::parse)]
+    pub separation: Vec<SeparationChoice>,
     /// Numbers of objects shown: 1, 2, ..., all.
     #[arg(long, value_delimiter = ',', default_value = "1,2,3,4,5,all", value_parser = Objects::parse)]
     pub objects: Vec<Objects>,
@@ -37,14 +45,32 @@ pub struct Evaluate {
     #[arg(long, value_delimiter = ',')]
     pub people: Vec<String>,
     /// How distractors are drawn: hash, same-wall.
-    #[arg(long, default_value = "hash", value_parser = Draw::parse)]
-    pub draw: Draw,
+    #[arg(long, value_delimiter = ',', default_value = "hash", value_parser = Draw::parse)]
+    pub draw: Vec<Draw>,
     /// v_h of the separation rule, m/s.
-    #[arg(long, default_value_t = 1.6, value_parser = walking_speed)]
+    #[arg(long, default_value_t = 1.6, value_parser = |text: &str| within("v-h", text, 1.6, 3.0))]
     pub v_h: f64,
     /// The machine: simulated, ideal.
     #[arg(long, default_value = "simulated", value_parser = MachineKind::parse)]
     pub machine: MachineKind,
+    /// Find out why each failed trial failed, by replaying it with one thing made right at a time.
+    #[arg(long)]
+    pub blame: bool,
+    /// Added to the way of every pose, ms.
+    #[arg(long, default_value_t = 0.0, value_parser = |text: &str| within("latency-ms", text, 0.0, 1_000.0))]
+    pub latency_ms: f64,
+    /// Share of poses that never arrive, 0 to 1.
+    #[arg(long, default_value_t = 0.0, value_parser = |text: &str| within("loss", text, 0.0, 1.0))]
+    pub loss: f64,
+    /// Standard deviation of each coordinate of each pose, cm.
+    #[arg(long, default_value_t = 0.0, value_parser = |text: &str| within("noise-cm", text, 0.0, 100.0))]
+    pub noise_cm: f64,
+    /// Standard deviation of heading, elevation and roll of each pose, degrees.
+    #[arg(long, default_value_t = 0.0, value_parser = |text: &str| within("noise-deg", text, 0.0, 90.0))]
+    pub noise_deg: f64,
+    /// The machine's accelerations, braking included, as a share of the paper's.
+    #[arg(long, default_value_t = 1.0, value_parser = |text: &str| within("acceleration-share", text, 0.05, 10.0))]
+    pub acceleration_share: f64,
     /// Threads; 0 for as many as there are cores. The result does not depend on it.
     #[arg(long, default_value_t = 0)]
     pub threads: usize,
@@ -80,18 +106,33 @@ pub fn run(options: &Evaluate) -> anyhow::Result<String> {
 }
 
 fn plan(options: &Evaluate) -> Plan {
-    let default_rule: RuleName = Config::default().people.intention_rule;
+    let default_rule = Config::default().people.intention_rule;
     Plan {
         rules: if options.rules.is_empty() { RuleChoice::all() } else { options.rules.clone() },
+        motions: options.motion.clone(),
+        separations: options.separation.clone(),
         objects: options.objects.clone(),
         priors: options.prior.clone(),
         tasks: options.task.clone(),
         people: options.people.clone(),
-        draw: options.draw,
+        draws: options.draw.clone(),
         v_h_mps: options.v_h,
         machine: options.machine,
-        default_rule,
+        conditions: conditions(options),
+        blames: options.blame,
         threads: options.threads,
+        ..Plan::new(default_rule, DEFAULT_MOTION)
+    }
+}
+
+fn conditions(options: &Evaluate) -> Conditions {
+    let noise =
+        TrackingNoise { position_m: 0.01 * options.noise_cm, rotation_rad: options.noise_deg.to_radians() };
+    Conditions {
+        latency: Span::from_secs(1e-3 * options.latency_ms),
+        loss: options.loss,
+        noise,
+        acceleration_share: options.acceleration_share,
     }
 }
 
@@ -103,7 +144,11 @@ fn bar() -> ProgressBar {
     ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-fn walking_speed(text: &str) -> Result<f64, PlanProblem> {
-    let problem = || PlanProblem { what: "v_h", found: text.into(), expected: "m/s from 1.6 to 3".into() };
-    text.parse().ok().filter(|v_h| (1.6..=3.0).contains(v_h)).ok_or_else(problem)
+fn within(what: &'static str, text: &str, least: f64, most: f64) -> Result<f64, PlanProblem> {
+    let expected = format!("a number from {least} to {most}");
+    let problem = || PlanProblem { what, found: text.into(), expected };
+    text.parse().ok().filter(|value| (least..=most).contains(value)).ok_or_else(problem)
 }
+
+/// How the server moves the column when nothing is configured.
+const DEFAULT_MOTION: MotionName = MotionName::Proxy;

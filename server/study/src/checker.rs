@@ -165,6 +165,11 @@ impl Checker {
         &self.verdict
     }
 
+    /// What was found so far; it counts anew from now on, and forgets nothing of what it follows.
+    pub fn take_verdict(&mut self) -> Verdict {
+        std::mem::take(&mut self.verdict)
+    }
+
     fn check_separation(&mut self, moment: &Moment<'_>, moving: bool) {
         for found in self.separation.tick(&self.rules, moment) {
             if moving && matches!(found.subject, Subject::Person(_)) {

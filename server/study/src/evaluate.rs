@@ -5,14 +5,21 @@
 //! distractors are shown is decided by a hash, so that everybody draws alike. Results do not depend on the number of
 //! threads: each trial has a place of its own, and is summed up in that order.
 
+mod blame;
 mod draw;
 mod plan;
 mod row;
+mod rows;
 mod run;
+mod subjects;
 mod tables;
 
+pub use blame::Cause;
 pub use draw::Draw;
-pub use plan::{MachineKind, Objects, Plan, PlanProblem, Prior, RuleChoice};
-pub use row::{Evaluation, Row};
-pub use run::{EvaluationProblem, Progress, Subjects, evaluate};
+pub use plan::{
+    Conditions, MachineKind, Objects, Plan, PlanProblem, Prior, RuleChoice, SeparationChoice, motion,
+};
+pub use row::{Evaluation, LeftOut, Row};
+pub use run::{EvaluationProblem, Progress, evaluate, sweep};
+pub use subjects::Subjects;
 pub use tables::{csv, json, terminal};

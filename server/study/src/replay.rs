@@ -6,8 +6,9 @@
 mod belief;
 mod headset;
 mod link;
-mod standing;
 mod trial;
+mod walk;
+mod watch;
 
 use std::sync::Arc;
 
@@ -26,8 +27,8 @@ use crate::checker::{Checker, Moment, Motion, PersonNow, Rectangle, Rules, Track
 use crate::random::Random;
 pub use belief::{BeliefThen, BeliefTold, LOOKS_BEFORE_REACH_SECS};
 pub use link::{LinkProfile, PoseLink};
-pub use standing::{CannotStand, bring_to};
-pub use trial::{ReachTrial, TrialOutcome, TrialProblem};
+pub use trial::{Conduct, Glimpse, ReachTrial, TrialOutcome, TrialProblem};
+pub use walk::{Pace, TrackingNoise, Walk};
 
 /// Engine, machine, link and checkers, stepping together.
 pub struct ClosedLoop {
@@ -148,6 +149,17 @@ impl ClosedLoop {
         if answer.outcome == Outcome::Refused { Err(self.engine.mode()) } else { Ok(()) }
     }
 
+    /// Armed `ago` before now, with nobody there, on a machine that is homed and has stood still since; or the mode in
+    /// which it stuck. The steps between are not taken: all that they would do is to hold the machine where it stands,
+    /// and let the soft start after arming go by.
+    pub fn armed_standing(&mut self, ago: Span) -> Result<(), Mode> {
+        let armed_at = self.now - ago;
+        let report = MachineReport { answered_at: armed_at, ..self.machine.read(self.now).report };
+        self.engine.observe(armed_at, Observation::Machine(report));
+        let answer = self.engine.request(armed_at, Request::Machine(RequestKind::Arm, None));
+        if answer.outcome == Outcome::Refused { Err(self.engine.mode()) } else { Ok(()) }
+    }
+
     /// What happened since the last call, oldest first.
     pub fn drain_events(&mut self) -> std::vec::Drain<'_, Event> {
         self.engine.drain_events()
@@ -171,6 +183,11 @@ impl ClosedLoop {
     /// What the checkers found of the commanded motion.
     pub fn commanded_verdict(&self) -> &Verdict {
         self.checkers[1].verdict()
+    }
+
+    /// What the checkers found of the true and of the commanded motion; they count anew from now on.
+    pub fn take_verdicts(&mut self) -> [Verdict; 2] {
+        self.checkers.each_mut().map(Checker::take_verdict)
     }
 
     fn check(&mut self, stepped: &Stepped, taken: bool, heads: &[TrueHead]) {

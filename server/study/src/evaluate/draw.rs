@@ -23,35 +23,40 @@ impl Draw {
     }
 
     /// The targets shown, as indices in the order of their ids: the goal and the first distractors by the hex SHA-256
-    /// of `trial/objects/target`. `objects` is the number in the hash; all targets are shown where there are fewer.
-    pub fn targets(self, recording: &Recording, goal: usize, objects: usize) -> Vec<usize> {
+    /// of `drawn_for/objects/target`; all targets where there are fewer. `drawn_for` is the trial, in a session the
+    /// trial and the visit's number.
+    pub fn targets(self, recording: &Recording, drawn_for: &str, goal: usize, objects: usize) -> Vec<usize> {
+        let mut shown = self.distractors(recording, drawn_for, goal, objects);
+        shown.truncate(objects.saturating_sub(1));
+        shown.push(goal);
+        shown.sort_by(|a, b| recording.targets[*a].id.cmp(&recording.targets[*b].id));
+        shown
+    }
+
+    /// The distractor that a wrong prior names: the first drawn.
+    pub fn first_distractor(
+        self,
+        recording: &Recording,
+        drawn_for: &str,
+        goal: usize,
+        objects: usize,
+    ) -> Option<usize> {
+        self.distractors(recording, drawn_for, goal, objects).first().copied()
+    }
+
+    /// Every other target, in the order of the draw.
+    fn distractors(self, recording: &Recording, drawn_for: &str, goal: usize, objects: usize) -> Vec<usize> {
         let targets = &recording.targets;
         let mut others: Vec<(bool, String, usize)> = (0..targets.len())
             .filter(|&index| index != goal)
             .map(|index| {
-                let key = format!("{}/{objects}/{}", recording.trial, targets[index].id);
+                let key = format!("{drawn_for}/{objects}/{}", targets[index].id);
                 let elsewhere = self == Self::SameWall && targets[index].view_deg != targets[goal].view_deg;
                 (elsewhere, hex(&Sha256::digest(key)), index)
             })
             .collect();
         others.sort();
-        others.truncate(objects.saturating_sub(1));
-        let mut shown: Vec<usize> = others.into_iter().map(|(_, _, index)| index).chain([goal]).collect();
-        shown.sort_by(|a, b| targets[*a].id.cmp(&targets[*b].id));
-        shown
-    }
-
-    /// The distractor that a wrong prior names: the first drawn.
-    pub fn first_distractor(self, recording: &Recording, goal: usize, objects: usize) -> Option<usize> {
-        let one = recording.targets.iter().enumerate().filter(|(index, _)| *index != goal).min_by_key(
-            |(index, target)| {
-                let key = format!("{}/{objects}/{}", recording.trial, target.id);
-                let elsewhere = self == Self::SameWall
-                    && recording.targets[*index].view_deg != recording.targets[goal].view_deg;
-                (elsewhere, hex(&Sha256::digest(key)))
-            },
-        );
-        one.map(|(index, _)| index)
+        others.into_iter().map(|(_, _, index)| index).collect()
     }
 }
 
@@ -81,10 +86,10 @@ mod tests {
     fn the_goal_is_always_shown_and_the_order_is_by_id() {
         let recording = recording();
         for objects in 1..=6 {
-            let shown = Draw::Hash.targets(&recording, 4, objects);
+            let shown = Draw::Hash.targets(&recording, "a/1", 4, objects);
             assert!(shown.len() == objects && shown.contains(&4) && shown.is_sorted(), "{shown:?}");
         }
-        assert_eq!(Draw::Hash.targets(&recording, 4, 9).len(), 6);
+        assert_eq!(Draw::Hash.targets(&recording, "a/1", 4, 9).len(), 6);
     }
 
     #[test]
@@ -93,13 +98,13 @@ mod tests {
         let recording = recording();
         let least =
             (0..6).filter(|i| *i != 4).min_by_key(|i| hex(&Sha256::digest(format!("a/1/2/T{i}")))).unwrap();
-        assert_eq!(Draw::Hash.first_distractor(&recording, 4, 2), Some(least));
-        assert!(Draw::Hash.targets(&recording, 4, 2).contains(&least));
+        assert_eq!(Draw::Hash.first_distractor(&recording, "a/1", 4, 2), Some(least));
+        assert!(Draw::Hash.targets(&recording, "a/1", 4, 2).contains(&least));
     }
 
     #[test]
     fn the_same_wall_comes_first() {
-        let shown = Draw::SameWall.targets(&recording(), 4, 3);
+        let shown = Draw::SameWall.targets(&recording(), "a/1", 4, 3);
         assert_eq!(shown, [0, 2, 4]);
     }
 }

@@ -1,8 +1,13 @@
 //! What is evaluated: rules, numbers of objects, priors, people.
 
-use covr_engine::intention::RuleName;
+use covr_engine::intention::{IntentionParameters, RuleName};
+use covr_engine::machine::{AxisLimits, Limits};
+use covr_engine::motion::MotionName;
+use covr_engine::safety::separation::{KeptFrom, WhollySimulated};
+use covr_engine::time::Span;
 
 use super::draw::Draw;
+use crate::replay::{LinkProfile, TrackingNoise};
 
 /// A rule of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,11 +47,37 @@ pub enum MachineKind {
     Ideal,
 }
 
+/// Whether the separation rule is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SeparationChoice {
+    /// As the server always keeps it.
+    On,
+    /// From nobody: to see what it costs.
+    Off,
+}
+
+/// What makes a laboratory's day harder than the recording was.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conditions {
+    /// Added to the way of every pose.
+    pub latency: Span,
+    /// Share of poses that never arrive.
+    pub loss: f64,
+    /// What tracking gets wrong.
+    pub noise: TrackingNoise,
+    /// The machine's accelerations, braking included, as a share of the paper's.
+    pub acceleration_share: f64,
+}
+
 /// Everything that is evaluated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// The rules.
     pub rules: Vec<RuleChoice>,
+    /// The motions; empty: the default one, and every one for the paper's rules.
+    pub motions: Vec<MotionName>,
+    /// With the separation rule, without it.
+    pub separations: Vec<SeparationChoice>,
     /// The numbers of objects.
     pub objects: Vec<Objects>,
     /// The priors.
@@ -56,13 +87,21 @@ pub struct Plan {
     /// People by name; empty: every one.
     pub people: Vec<String>,
     /// How distractors are drawn.
-    pub draw: Draw,
+    pub draws: Vec<Draw>,
     /// v_h of the separation rule, m/s.
     pub v_h_mps: f64,
     /// The machine.
     pub machine: MachineKind,
+    /// What is harder than it was.
+    pub conditions: Conditions,
+    /// The numbers of the intention rules.
+    pub intention: IntentionParameters,
     /// The rule that the server uses when nothing is configured.
     pub default_rule: RuleName,
+    /// And the motion.
+    pub default_motion: MotionName,
+    /// Find the cause of every failed trial.
+    pub blames: bool,
     /// Threads; 0: as many as there are cores.
     pub threads: usize,
 }
@@ -77,6 +116,89 @@ pub struct PlanProblem {
     pub found: String,
     /// What could have been.
     pub expected: String,
+}
+
+impl Plan {
+    /// Every rule with the numbers of objects 1 to 5 and all, no prior, the rule on, on the simulated machine.
+    pub fn new(default_rule: RuleName, default_motion: MotionName) -> Self {
+        Self {
+            rules: RuleChoice::all(),
+            motions: Vec::new(),
+            separations: vec![SeparationChoice::On],
+            objects: (1..=5).map(Objects::Count).chain([Objects::All]).collect(),
+            priors: vec![Prior::None],
+            tasks: Vec::new(),
+            people: Vec::new(),
+            draws: vec![Draw::Hash],
+            v_h_mps: 1.6,
+            machine: MachineKind::Simulated,
+            conditions: Conditions::AS_RECORDED,
+            intention: IntentionParameters::default(),
+            default_rule,
+            default_motion,
+            blames: false,
+            threads: 0,
+        }
+    }
+
+    /// The motions that a rule is tried with.
+    pub(super) fn motions_of(&self, rule: RuleChoice) -> Vec<MotionName> {
+        if !self.motions.is_empty() {
+            self.motions.clone()
+        } else if rule.is_of_the_paper() {
+            MotionName::ALL.to_vec()
+        } else {
+            vec![self.default_motion]
+        }
+    }
+}
+
+impl Conditions {
+    /// Nothing is harder.
+    pub const AS_RECORDED: Self = Self {
+        latency: Span::ZERO,
+        loss: 0.0,
+        noise: TrackingNoise { position_m: 0.0, rotation_rad: 0.0 },
+        acceleration_share: 1.0,
+    };
+
+    /// How poses travel.
+    pub const fn link(&self) -> LinkProfile {
+        LinkProfile { delay: self.latency, jitter: Span::ZERO, loss: self.loss }
+    }
+
+    /// The machine's limits.
+    pub fn limits(&self) -> Limits {
+        let axis = |own: AxisLimits| AxisLimits {
+            acceleration_mps2: own.acceleration_mps2 * self.acceleration_share,
+            braking_mps2: own.braking_mps2 * self.acceleration_share,
+            ..own
+        };
+        Limits { x: axis(Limits::PAPER.x), y: axis(Limits::PAPER.y) }
+    }
+}
+
+impl SeparationChoice {
+    /// Its name on the command line and in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::On => "on",
+            Self::Off => "off",
+        }
+    }
+
+    /// The choice of this name.
+    pub fn parse(name: &str) -> Result<Self, PlanProblem> {
+        named("separation", name, &[Self::On, Self::Off], Self::name)
+    }
+
+    /// In the engine's words: nothing real moves in a replay.
+    pub const fn kept_from(self) -> KeptFrom {
+        match self {
+            Self::On => KeptFrom::Everybody,
+            Self::Off => KeptFrom::Nobody(WhollySimulated::by_a_replay_on_virtual_time()),
+        }
+    }
 }
 
 impl RuleChoice {
@@ -96,6 +218,11 @@ impl RuleChoice {
     /// The rule of this name.
     pub fn parse(name: &str) -> Result<Self, PlanProblem> {
         named("rule", name, &Self::all(), Self::name)
+    }
+
+    /// One of the paper's readings: run with every motion, so that prediction and motion can be told apart.
+    fn is_of_the_paper(self) -> bool {
+        self.name().starts_with("paper")
     }
 
     /// The engine's rule. Told, every other prior is nothing, so that any rule has but one choice.
@@ -156,7 +283,21 @@ impl Draw {
     }
 }
 
+/// The motion of this name.
+pub fn motion(name: &str) -> Result<MotionName, PlanProblem> {
+    named("motion", name, &MotionName::ALL, MotionName::name)
+}
+
 impl MachineKind {
+    /// The period of the loop that drives it. The ideal machine needs no loop faster than the poses; its period is
+    /// rounded up, so that each pose has arrived when its step comes.
+    pub const fn period(self) -> Span {
+        match self {
+            Self::Simulated => Span::from_millis(4),
+            Self::Ideal => Span::from_micros(13_334),
+        }
+    }
+
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
         match self {

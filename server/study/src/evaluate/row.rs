@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::blame::Cause;
+use super::plan::SeparationChoice;
+use crate::checker::Verdict;
 use crate::replay::{LOOKS_BEFORE_REACH_SECS, TrialOutcome};
 
 /// The whole table.
@@ -19,8 +22,25 @@ pub struct Evaluation {
     pub wall_secs: f64,
     /// Virtual time replayed, s.
     pub simulated_secs: f64,
+    /// What was made harder than it was recorded: SI units in the names.
+    pub conditions: BTreeMap<&'static str, f64>,
+    /// What could not be evaluated, and why.
+    pub left_out: Vec<LeftOut>,
     /// The rows.
     pub rows: Vec<Row>,
+    /// The same trials pooled: over the numbers of objects up to 5, by task and over every task. `objects` is 0.
+    pub pooled: Vec<Row>,
+}
+
+/// Recordings of a file that no trial can be made of.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LeftOut {
+    /// The file, without its endings.
+    pub file: String,
+    /// How many recordings.
+    pub recordings: usize,
+    /// Why.
+    pub because: &'static str,
 }
 
 /// One row.
@@ -66,8 +86,11 @@ pub struct Row {
     pub detection_accuracy: f64,
     /// Least distance from a head axis to the footprint while the column moved, m; null if it never did.
     pub least_separation_moving_m: Option<f64>,
-    /// Violations of separation, travel and limits, of the commanded and of the true motion.
+    /// Violations of separation, travel and limits, of the commanded and of the true motion; of travel and limits
+    /// alone where the separation rule was off.
     pub violations: u64,
+    /// Ticks that broke the separation rule, of the commanded and of the true motion, whether or not it was kept.
+    pub separation_breaches: u64,
     /// Stops.
     pub stops: u64,
     /// Mean way of the column, m.
@@ -86,6 +109,15 @@ pub struct Row {
     pub top1_wall: BTreeMap<String, f64>,
     /// Mean negative logarithm of the goal's probability, by seconds before the reach.
     pub log_loss: BTreeMap<String, f64>,
+    /// Failed trials by cause; empty where nobody looked for it.
+    pub blame: BTreeMap<&'static str, u64>,
+}
+
+/// A trial, and why it failed if it did and somebody looked.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Judged {
+    pub outcome: TrialOutcome,
+    pub cause: Option<Cause>,
 }
 
 /// What a row is about.
@@ -94,16 +126,27 @@ pub(super) struct RowKey {
     pub file: String,
     pub task: String,
     pub rule: &'static str,
+    pub motion: &'static str,
     pub default: bool,
     pub prior: &'static str,
     pub draw: &'static str,
     pub objects: usize,
+    pub separation: SeparationChoice,
     pub v_h_mps: f64,
 }
 
 impl Row {
     /// Sum trials up, in their order.
-    pub(super) fn of(key: RowKey, outcomes: &[&TrialOutcome]) -> Self {
+    pub(super) fn of(key: RowKey, judged: &[&Judged]) -> Self {
+        let outcomes: Vec<&TrialOutcome> = judged.iter().map(|judged| &judged.outcome).collect();
+        let mut blame = BTreeMap::new();
+        for cause in judged.iter().filter_map(|judged| judged.cause) {
+            *blame.entry(cause.name()).or_insert(0) += 1;
+        }
+        let verdicts = || outcomes.iter().flat_map(|o| [&o.true_verdict, &o.commanded_verdict]);
+        let separation_breaches = verdicts().map(|verdict| verdict.separation).sum();
+        let of_all: u64 = verdicts().map(Verdict::violations).sum();
+        let kept = key.separation == SeparationChoice::On;
         let trials = outcomes.len();
         let good: Vec<&TrialOutcome> = outcomes.iter().copied().filter(|o| o.success).collect();
         let share = |count: usize| if trials > 0 { count as f64 / trials as f64 } else { 0.0 };
@@ -129,12 +172,12 @@ impl Row {
             file: key.file,
             task: key.task,
             rule: key.rule,
-            motion: "proxy",
+            motion: key.motion,
             default: key.default,
             prior: key.prior,
             draw: key.draw,
             objects: key.objects,
-            separation: "on",
+            separation: key.separation.name(),
             v_h_mps: key.v_h_mps,
             trials,
             successes: good.len(),
@@ -149,10 +192,8 @@ impl Row {
                 .iter()
                 .filter_map(|o| o.true_verdict.least_separation_moving_m)
                 .reduce(f64::min),
-            violations: outcomes
-                .iter()
-                .map(|o| o.true_verdict.violations() + o.commanded_verdict.violations())
-                .sum(),
+            violations: if kept { of_all } else { of_all - separation_breaches },
+            separation_breaches,
             stops: outcomes.iter().map(|o| u64::from(o.stops)).sum(),
             column_travel_m: mean(outcomes.iter().map(|o| o.column_travel_m)),
             peak_speed_mps: greatest(0),
@@ -162,6 +203,7 @@ impl Row {
             top1,
             top1_wall,
             log_loss,
+            blame,
         }
     }
 }

@@ -1,36 +1,26 @@
 //! The work: every trial of the plan, on all cores, each in a place of its own.
 
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use covr_engine::frames::{Floor, Planar};
-use covr_engine::machine::{AxisLimits, Limits, Travel};
+use covr_engine::intention::IntentionParameters;
+use covr_engine::machine::{AxisLimits, Limits};
+use covr_engine::motion::MotionName;
 use covr_engine::time::Time;
 use covr_gantry::contract::Simulated;
 use covr_gantry::ideal::IdealMachine;
 use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::{MachineParameters, ParameterProblem};
 
-use super::plan::{MachineKind, Objects, Plan, Prior, RuleChoice};
-use super::row::{Evaluation, Row, RowKey};
-use crate::replay::{CannotStand, LinkProfile, ReachTrial, TrialOutcome, TrialProblem, bring_to};
-use crate::trace::{Recording, Recordings, TraceError, trace_files};
-
-/// Recorded reaches, by file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Subjects {
-    reaches: Vec<Reach>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-struct Reach {
-    file: String,
-    recording: Recording,
-    goal: usize,
-    /// Where the column begins: this person's goal before, in the recording's room.
-    column: Floor,
-}
+use super::blame;
+use super::draw::Draw;
+use super::plan::{Conditions, MachineKind, Objects, Plan, Prior, RuleChoice, SeparationChoice};
+use super::row::{Evaluation, Judged};
+use super::rows::{pooled, rows};
+use super::subjects::{Reach, Subjects, task, travel};
+use crate::replay::{Conduct, Glimpse, Pace, ReachTrial, TrialOutcome, TrialProblem, Walk};
+use crate::trace::TraceError;
 
 /// Why there is no evaluation.
 #[derive(Debug, thiserror::Error)]
@@ -44,14 +34,6 @@ pub enum EvaluationProblem {
     /// A trial cannot be replayed.
     #[error(transparent)]
     Trial(#[from] TrialProblem),
-    /// The machine does not stand where the trial begins.
-    #[error("trial {trial}: {problem}")]
-    Start {
-        /// Which.
-        trial: String,
-        /// Why.
-        problem: CannotStand,
-    },
     /// The simulated machine cannot be built for this arena.
     #[error("the simulated machine: {0}")]
     Machine(#[from] ParameterProblem),
@@ -60,63 +42,45 @@ pub enum EvaluationProblem {
 /// Told of each trial that is done, and of how many there are.
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
-impl Subjects {
-    /// Read files and folders of traces; recordings without a goal and a reach are left out.
-    pub fn read(paths: &[PathBuf]) -> Result<Self, EvaluationProblem> {
-        let mut reaches: Vec<Reach> = Vec::new();
-        for path in paths {
-            for file in trace_files(path)? {
-                let name = stem(&file);
-                for recording in Recordings::open(&file)? {
-                    let recording = recording?;
-                    let Some(goal) = recording.goal.filter(|_| recording.events.reach.is_some()) else {
-                        continue;
-                    };
-                    let column = column_start(&reaches, &recording);
-                    reaches.push(Reach { file: name.clone(), recording, goal, column });
-                }
-            }
-        }
-        if reaches.is_empty() { Err(EvaluationProblem::Nothing) } else { Ok(Self { reaches }) }
-    }
-
-    fn chosen<'a>(&'a self, plan: &'a Plan) -> impl Iterator<Item = &'a Reach> {
-        self.reaches.iter().filter(|reach| {
-            let asked = |list: &[String], word: &str| list.is_empty() || list.iter().any(|one| one == word);
-            asked(&plan.tasks, task(&reach.recording)) && asked(&plan.people, &reach.recording.user)
-        })
-    }
-}
-
 /// Replay the plan.
 pub fn evaluate(
     subjects: &Subjects,
     plan: &Plan,
     progress: Progress<'_>,
 ) -> Result<Evaluation, EvaluationProblem> {
+    let one = sweep(subjects, plan, std::slice::from_ref(&plan.intention), progress)?;
+    one.into_iter().next().ok_or(EvaluationProblem::Nothing)
+}
+
+/// Replay the plan with each of these numbers of the rules, in their order: what evaluating one after the other would
+/// give, but every person's poses are prepared once.
+pub fn sweep(
+    subjects: &Subjects,
+    plan: &Plan,
+    intentions: &[IntentionParameters],
+    progress: Progress<'_>,
+) -> Result<Vec<Evaluation>, EvaluationProblem> {
     let cells = cells(plan);
-    let reaches: Vec<&Reach> = subjects.chosen(plan).collect();
+    let reaches: Vec<&Reach> = subjects.reaches.iter().filter(|reach| is_chosen(reach, plan)).collect();
     if reaches.is_empty() {
         return Err(EvaluationProblem::Nothing);
     }
-    let count = cells.len() * reaches.len();
     let next = AtomicUsize::new(0);
     let done = AtomicUsize::new(0);
     let work = || {
         let mut mine = Vec::new();
         loop {
             let job = next.fetch_add(1, Ordering::Relaxed);
-            if job >= count {
-                return mine;
-            }
-            let outcome = replay(plan, &cells[job / reaches.len()], reaches[job % reaches.len()]);
-            progress(done.fetch_add(1, Ordering::Relaxed) + 1, count);
-            mine.push((job, outcome));
+            let Some(reach) = reaches.get(job) else { return mine };
+            let outcomes = with_each(plan, intentions, &cells, reach);
+            let of_reach = cells.len() * intentions.len();
+            progress(done.fetch_add(of_reach, Ordering::Relaxed) + of_reach, of_reach * reaches.len());
+            mine.push((job, outcomes));
         }
     };
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let threads = if plan.threads == 0 { cores } else { plan.threads };
-    let mut results: Vec<(usize, Result<Option<TrialOutcome>, EvaluationProblem>)> = thread::scope(|scope| {
+    let mut results: Vec<_> = thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
         let joined = workers.into_iter().map(|worker| match worker.join() {
             Ok(mine) => mine,
@@ -126,35 +90,158 @@ pub fn evaluate(
     });
     results.sort_by_key(|(job, _)| *job);
     let outcomes = results.into_iter().map(|(_, outcome)| outcome).collect::<Result<Vec<_>, _>>()?;
-    let rows = rows(plan, &cells, &reaches, &outcomes);
-    let simulated_secs = outcomes.iter().flatten().map(|outcome| outcome.simulated_secs).sum();
-    Ok(Evaluation {
+    let mut of_each: Vec<Vec<Vec<Option<Judged>>>> = intentions.iter().map(|_| Vec::new()).collect();
+    for of_reach in outcomes {
+        of_each.iter_mut().zip(of_reach).for_each(|(of_one, judged)| of_one.push(judged));
+    }
+    let evaluation = |outcomes: Vec<Vec<Option<Judged>>>| Evaluation {
         schema: "covr.evaluation.v1",
         version: env!("CARGO_PKG_VERSION"),
         limits: limits_in_words(plan),
         wall_secs: 0.0,
-        simulated_secs,
-        rows,
-    })
+        simulated_secs: outcomes.iter().flatten().flatten().map(|judged| judged.outcome.simulated_secs).sum(),
+        conditions: conditions_in_words(&plan.conditions),
+        left_out: subjects.left_out.clone(),
+        rows: rows(plan, &cells, &reaches, &outcomes),
+        pooled: pooled(plan, &cells, &reaches, &outcomes),
+    };
+    Ok(of_each.into_iter().map(evaluation).collect())
 }
 
-/// A rule, a number of objects and a prior.
+/// One combination of the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Cell {
-    rule: RuleChoice,
-    objects: Objects,
-    prior: Prior,
+pub(super) struct Cell {
+    pub rule: RuleChoice,
+    pub motion: MotionName,
+    pub separation: SeparationChoice,
+    pub prior: Prior,
+    pub draw: Draw,
+    pub objects: Objects,
+}
+
+/// One replay: a walk, what is shown, and how it is driven.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Course<'a> {
+    pub plan: &'a Plan,
+    pub cell: Cell,
+    pub reach: &'a Reach,
+    pub walk: &'a Walk<'a>,
+    pub intention: &'a IntentionParameters,
+    pub told_from: Option<Time>,
+    pub limits: Limits,
+    pub machine: MachineKind,
+    pub conditions: Conditions,
+}
+
+impl<'a> Course<'a> {
+    /// The replay that a cell of the plan asks for.
+    pub fn of(plan: &'a Plan, cell: Cell, reach: &'a Reach, walk: &'a Walk<'a>) -> Self {
+        let told_from = (cell.rule == RuleChoice::Told).then_some(walk.begins());
+        let Plan { conditions, machine, ref intention, .. } = *plan;
+        let limits = conditions.limits();
+        Self { plan, cell, reach, walk, intention, told_from, limits, machine, conditions }
+    }
+
+    /// What comes of it.
+    pub fn replayed(&self) -> Result<TrialOutcome, EvaluationProblem> {
+        self.replayed_before(&mut |_| ())
+    }
+
+    /// The same, with every step shown to `watcher`.
+    pub fn replayed_before(
+        &self,
+        watcher: &mut dyn FnMut(Glimpse<'_>),
+    ) -> Result<TrialOutcome, EvaluationProblem> {
+        let priors = self.priors();
+        let conduct = Conduct {
+            rule: self.cell.rule.engine_rule(),
+            intention: self.intention,
+            motion: self.cell.motion,
+            kept_from: self.cell.separation.kept_from(),
+            v_h_mps: self.plan.v_h_mps,
+        };
+        let targets = self.targets();
+        let trial = ReachTrial {
+            walk: self.walk,
+            targets: &targets,
+            priors: Some(&priors),
+            conduct,
+            told_from: self.told_from,
+            link: self.conditions.link(),
+            seed: SEED,
+        };
+        Ok(trial.run_watched(self.machine()?, watcher)?)
+    }
+
+    /// The same with poses as they were recorded; none where they are.
+    pub fn as_recorded(&self) -> Result<Option<TrialOutcome>, EvaluationProblem> {
+        let Conditions { acceleration_share, .. } = self.conditions;
+        let conditions = Conditions { acceleration_share, ..Conditions::AS_RECORDED };
+        if conditions == self.conditions {
+            return Ok(None);
+        }
+        let walk = Walk::of_reach(&self.reach.recording, &pace(self.plan, &conditions))?;
+        let course = Course { walk: &walk, conditions, ..*self };
+        course.replayed().map(Some)
+    }
+
+    /// The targets shown, as indices into the recording's.
+    pub fn targets(&self) -> Vec<usize> {
+        let recording = &self.reach.recording;
+        let objects = self.cell.objects.of(recording.targets.len());
+        self.cell.draw.targets(recording, &recording.trial, self.reach.goal, objects)
+    }
+
+    fn priors(&self) -> Vec<f64> {
+        let favoured = match self.cell.prior {
+            Prior::None => None,
+            Prior::Right => Some(self.reach.goal),
+            Prior::Wrong => self.first_distractor(),
+        };
+        let targets = self.targets();
+        let others = targets.len().saturating_sub(1).max(1) as f64;
+        let of = |&index: &usize| match favoured {
+            None => 1.0,
+            Some(favoured) if index == favoured => FAVOURED,
+            Some(_) => (1.0 - FAVOURED) / others,
+        };
+        targets.iter().map(of).collect()
+    }
+
+    fn first_distractor(&self) -> Option<usize> {
+        let recording = &self.reach.recording;
+        let objects = self.cell.objects.of(recording.targets.len());
+        self.cell.draw.first_distractor(recording, &recording.trial, self.reach.goal, objects)
+    }
+
+    fn machine(&self) -> Result<Box<dyn Simulated>, EvaluationProblem> {
+        let (travel, place) = (travel(&self.reach.recording), self.reach.column);
+        Ok(match self.machine {
+            MachineKind::Ideal => Box::new(IdealMachine::standing(self.limits, travel, place)),
+            MachineKind::Simulated => Box::new(SimulatedMachine::standing(MachineParameters {
+                limits: self.limits,
+                start: place,
+                ..MachineParameters::paper(travel)
+            })?),
+        })
+    }
 }
 
 fn cells(plan: &Plan) -> Vec<Cell> {
     let mut cells = Vec::new();
     for &rule in &plan.rules {
-        for &prior in &plan.priors {
-            for &objects in &plan.objects {
-                // With the goal alone, or told, a prior says nothing.
-                let alone = objects == Objects::Count(1) || rule == RuleChoice::Told;
-                if prior == Prior::None || !alone {
-                    cells.push(Cell { rule, objects, prior });
+        for motion in plan.motions_of(rule) {
+            for &separation in &plan.separations {
+                for &draw in &plan.draws {
+                    for &prior in &plan.priors {
+                        for &objects in &plan.objects {
+                            // With the goal alone, or told, a prior says nothing.
+                            let alone = objects == Objects::Count(1) || rule == RuleChoice::Told;
+                            if prior == Prior::None || !alone {
+                                cells.push(Cell { rule, motion, separation, prior, draw, objects });
+                            }
+                        }
+                    }
                 }
             }
         }
@@ -162,103 +249,40 @@ fn cells(plan: &Plan) -> Vec<Cell> {
     cells
 }
 
-/// One trial; none where the recording has no distractor to name wrongly.
-fn replay(plan: &Plan, cell: &Cell, reach: &Reach) -> Result<Option<TrialOutcome>, EvaluationProblem> {
-    let recording = &reach.recording;
-    let objects = cell.objects.of(recording.targets.len());
-    let targets = plan.draw.targets(recording, reach.goal, objects);
-    let favoured = match cell.prior {
-        Prior::None => None,
-        Prior::Right => Some(reach.goal),
-        Prior::Wrong => match plan.draw.first_distractor(recording, reach.goal, objects) {
-            Some(distractor) => Some(distractor),
-            None => return Ok(None),
-        },
-    };
-    let others = targets.len().saturating_sub(1).max(1) as f64;
-    let prior_of = |&index: &usize| match (cell.rule, favoured) {
-        (RuleChoice::Told, _) => f64::from(u8::from(index == reach.goal)),
-        (_, None) => 1.0,
-        (_, Some(favoured)) if index == favoured => FAVOURED,
-        (_, Some(_)) => (1.0 - FAVOURED) / others,
-    };
-    let priors: Vec<f64> = targets.iter().map(prior_of).collect();
-    let trial = ReachTrial {
-        recording,
-        targets: &targets,
-        priors: Some(&priors),
-        rule: cell.rule.engine_rule(),
-        v_h_mps: plan.v_h_mps,
-        pose_hz: POSE_HZ,
-        link: LinkProfile::PERFECT,
-        seed: 1,
-    };
-    let size = recording.size_m();
-    let travel = Travel { min: Floor::default(), max: Floor::default() + size };
-    let mut machine: Box<dyn Simulated> = match plan.machine {
-        MachineKind::Ideal => Box::new(IdealMachine::new(LIMITS, travel, travel.centre())),
-        MachineKind::Simulated => Box::new(SimulatedMachine::new(MachineParameters::paper(travel))?),
-    };
-    let from = bring_to(machine.as_mut(), reach.column, Time::ZERO)
-        .map_err(|problem| EvaluationProblem::Start { trial: recording.trial.clone(), problem })?;
-    Ok(Some(trial.run(machine, from)?))
-}
-
-fn rows(plan: &Plan, cells: &[Cell], reaches: &[&Reach], outcomes: &[Option<TrialOutcome>]) -> Vec<Row> {
-    let mut groups: Vec<(&str, &str)> = Vec::new();
-    for reach in reaches {
-        let group = (reach.file.as_str(), task(&reach.recording));
-        if !groups.contains(&group) {
-            groups.push(group);
+/// Every cell with each of the rules' numbers for one person's reach, whose walk is prepared once; none where the
+/// recording has no distractor to name wrongly.
+fn with_each(
+    plan: &Plan,
+    intentions: &[IntentionParameters],
+    cells: &[Cell],
+    reach: &Reach,
+) -> Result<Vec<Vec<Option<Judged>>>, EvaluationProblem> {
+    let walk = Walk::of_reach(&reach.recording, &pace(plan, &plan.conditions))?;
+    let judge = |intention, cell: &Cell| {
+        let course = Course { intention, ..Course::of(plan, *cell, reach, &walk) };
+        if cell.prior == Prior::Wrong && course.first_distractor().is_none() {
+            return Ok(None);
         }
-    }
-    let mut rows = Vec::new();
-    for (file, task_name) in groups {
-        for (cell, outcomes) in cells.iter().zip(outcomes.chunks(reaches.len())) {
-            let of_group: Vec<&TrialOutcome> = reaches
-                .iter()
-                .zip(outcomes)
-                .filter(|(reach, _)| (reach.file.as_str(), task(&reach.recording)) == (file, task_name))
-                .filter_map(|(_, outcome)| outcome.as_ref())
-                .collect();
-            if of_group.is_empty() {
-                continue;
-            }
-            let key = RowKey {
-                file: file.to_owned(),
-                task: task_name.to_owned(),
-                rule: cell.rule.name(),
-                default: cell.rule == RuleChoice::Rule(plan.default_rule),
-                prior: cell.prior.name(),
-                draw: plan.draw.name(),
-                objects: match cell.objects {
-                    Objects::Count(count) => count,
-                    Objects::All => 0,
-                },
-                v_h_mps: plan.v_h_mps,
-            };
-            rows.push(Row::of(key, &of_group));
-        }
-    }
-    rows
+        let outcome = course.replayed()?;
+        let judged =
+            if plan.blames { blame::judged(&course, outcome)? } else { Judged { outcome, cause: None } };
+        Ok(Some(judged))
+    };
+    let all_cells = |intention| cells.iter().map(|cell| judge(intention, cell)).collect();
+    intentions.iter().map(all_cells).collect()
 }
 
-/// The goal of the trial before of this person and task; for the first the arena's centre and a metre off.
-fn column_start(before: &[Reach], recording: &Recording) -> Floor {
-    let size = recording.size_m();
-    let travel = Travel { min: Floor::default(), max: Floor::default() + size };
-    let last = before
-        .iter()
-        .rev()
-        .find(|reach| reach.recording.user == recording.user && reach.recording.mode == recording.mode);
-    let place = last.map_or(travel.centre() + Planar::new(1.0, 1.0), |reach| {
-        reach.recording.room_from_trace().point(&reach.recording.targets[reach.goal].position).floor()
-    });
-    travel.shrunk(TRAVEL_MARGIN_M).clamped(place)
+pub(super) fn pace(plan: &Plan, conditions: &Conditions) -> Pace {
+    Pace { period: plan.machine.period(), pose_hz: POSE_HZ, noise: conditions.noise, seed: SEED }
 }
 
-fn limits_in_words(plan: &Plan) -> std::collections::BTreeMap<&'static str, f64> {
-    let AxisLimits { speed_mps, acceleration_mps2, braking_mps2, jerk_mps3 } = LIMITS.x;
+fn is_chosen(reach: &Reach, plan: &Plan) -> bool {
+    let asked = |list: &[String], word: &str| list.is_empty() || list.iter().any(|one| one == word);
+    asked(&plan.tasks, task(&reach.recording)) && asked(&plan.people, &reach.recording.user)
+}
+
+fn limits_in_words(plan: &Plan) -> BTreeMap<&'static str, f64> {
+    let AxisLimits { speed_mps, acceleration_mps2, braking_mps2, jerk_mps3 } = plan.conditions.limits().x;
     [
         ("speed_mps", speed_mps),
         ("acceleration_mps2", acceleration_mps2),
@@ -266,35 +290,36 @@ fn limits_in_words(plan: &Plan) -> std::collections::BTreeMap<&'static str, f64>
         ("jerk_mps3", jerk_mps3),
         ("v_h_mps", plan.v_h_mps),
         ("pose_hz", POSE_HZ),
+        ("period_s", plan.machine.period().secs()),
     ]
     .into()
 }
 
-fn task(recording: &Recording) -> &str {
-    recording.mode.as_deref().unwrap_or("none")
+fn conditions_in_words(conditions: &Conditions) -> BTreeMap<&'static str, f64> {
+    [
+        ("latency_s", conditions.latency.secs()),
+        ("loss", conditions.loss),
+        ("noise_m", conditions.noise.position_m),
+        ("noise_rad", conditions.noise.rotation_rad),
+        ("acceleration_share", conditions.acceleration_share),
+    ]
+    .into()
 }
 
-/// The file's name up to its first dot.
-fn stem(file: &Path) -> String {
-    let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    name.split('.').next().unwrap_or_default().to_owned()
-}
-
-/// The paper's machine.
-const LIMITS: Limits = Limits::PAPER;
 /// The paper's head tracking, Hz.
 const POSE_HZ: f64 = 75.0;
 /// The paper's prior on the goal.
 const FAVOURED: f64 = 0.75;
-/// Inside the engine's own margin to the travel limits, m.
-const TRAVEL_MARGIN_M: f64 = 0.05;
+/// Of losses and noise.
+const SEED: u64 = 1;
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluate::Draw;
+    use covr_engine::frames::Floor;
     use covr_engine::intention::RuleName;
     use std::fmt::Write;
+    use std::path::Path;
 
     /// Two reaches of one person: to A in a file of two lines, then to B.
     fn subjects(folder: &Path) -> Subjects {
@@ -324,15 +349,12 @@ mod tests {
     fn plan(threads: usize) -> Plan {
         Plan {
             rules: vec![RuleChoice::Rule(RuleName::PaperBest), RuleChoice::Told],
+            motions: vec![MotionName::Proxy],
             objects: vec![Objects::Count(1), Objects::All],
             priors: Prior::ALL.to_vec(),
-            tasks: Vec::new(),
-            people: Vec::new(),
-            draw: Draw::Hash,
-            v_h_mps: 1.6,
             machine: MachineKind::Ideal,
-            default_rule: RuleName::PaperBest,
             threads,
+            ..Plan::new(RuleName::PaperBest, MotionName::Proxy)
         }
     }
 
@@ -342,6 +364,7 @@ mod tests {
         let subjects = subjects(folder.path());
         let one = evaluate(&subjects, &plan(1), &|_, _| ()).unwrap();
         assert_eq!(one, evaluate(&subjects, &plan(3), &|_, _| ()).unwrap());
+        assert!(one.pooled.iter().all(|row| row.objects == 0 && row.trials == 2), "{:?}", one.pooled);
         // Prior by prior, two counts for the rule less the lone goal with a prior; two counts told.
         assert_eq!(one.rows.len(), 4 + 2);
         let told = one.rows.iter().find(|row| row.rule == "told" && row.objects == 0).unwrap();
@@ -364,5 +387,31 @@ mod tests {
         let subjects = subjects(folder.path());
         let nobody = Plan { people: vec!["x".into()], ..plan(1) };
         assert!(matches!(evaluate(&subjects, &nobody, &|_, _| ()), Err(EvaluationProblem::Nothing)));
+    }
+
+    #[test]
+    fn every_failure_has_a_cause_and_every_cause_is_counted() {
+        let folder = tempfile::tempdir().unwrap();
+        let subjects = subjects(folder.path());
+        // So slow a machine is nowhere in time.
+        let conditions = Conditions { acceleration_share: 0.02, ..Conditions::AS_RECORDED };
+        let blamed = evaluate(&subjects, &Plan { blames: true, conditions, ..plan(1) }, &|_, _| ()).unwrap();
+        for row in &blamed.rows {
+            assert_eq!(row.blame.values().sum::<u64>(), (row.trials - row.successes) as u64, "{row:?}");
+        }
+        let told = blamed.rows.iter().find(|row| row.rule == "told").unwrap();
+        assert!(told.blame.contains_key("acceleration"), "{:?}", told.blame);
+    }
+
+    #[test]
+    fn without_the_separation_rule_its_breaches_are_counted_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        let subjects = subjects(folder.path());
+        let separations = vec![SeparationChoice::On, SeparationChoice::Off];
+        let both = evaluate(&subjects, &Plan { separations, ..plan(1) }, &|_, _| ()).unwrap();
+        let of = |name: &str| both.rows.iter().filter(|row| row.separation == name).collect::<Vec<_>>();
+        assert_eq!(of("on").len(), of("off").len());
+        assert!(of("on").iter().all(|row| row.separation_breaches == 0));
+        assert!(both.rows.iter().all(|row| row.violations == 0));
     }
 }

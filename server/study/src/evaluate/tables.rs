@@ -4,17 +4,18 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::row::{Evaluation, Row};
+use super::blame::Cause;
+use super::row::{Evaluation, LeftOut, Row};
 
 /// As JSON, whole numbers as integers.
 pub fn json(evaluation: &Evaluation) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(evaluation)
 }
 
-/// As CSV: the keys of a JSON row, and one column for each of its moments.
+/// As CSV, rows and then pools: the keys of a JSON row, and one column for each of its moments.
 pub fn csv(evaluation: &Evaluation) -> Result<String, serde_json::Error> {
     let mut text = String::new();
-    for (number, row) in evaluation.rows.iter().enumerate() {
+    for (number, row) in evaluation.rows.iter().chain(&evaluation.pooled).enumerate() {
         let cells = flat(row)?;
         if number == 0 {
             let names: Vec<&str> = cells.iter().map(|(name, _)| name.as_str()).collect();
@@ -26,61 +27,180 @@ pub fn csv(evaluation: &Evaluation) -> Result<String, serde_json::Error> {
     Ok(text)
 }
 
-/// For the terminal: success by number of objects, a line for each rule, prior and task.
+/// For the terminal: success by number of objects, a line for all else that was varied; the pools, and the goals.
 pub fn terminal(evaluation: &Evaluation) -> String {
     let mut counts: Vec<usize> = evaluation.rows.iter().map(|row| row.objects).collect();
     // All objects come last.
     counts.sort_by_key(|&count| if count == 0 { usize::MAX } else { count });
     counts.dedup();
-    let mut lines: Vec<(&str, &str, &str, &str)> = Vec::new();
-    for row in &evaluation.rows {
-        let line = (row.file.as_str(), row.task.as_str(), row.rule, row.prior);
-        if !lines.contains(&line) {
-            lines.push(line);
+    let mut lines: Vec<Line<'_>> = Vec::new();
+    for row in evaluation.rows.iter().chain(&evaluation.pooled) {
+        if !lines.contains(&line(row)) {
+            lines.push(line(row));
         }
     }
-    let mut text = format!("{:<16} {:<8} {:<18} {:<6}", "file", "task", "rule", "prior");
+    let name = |count: &usize| if *count == 0 { "all".to_owned() } else { count.to_string() };
+    let mut text = format!(
+        "{:<16} {:<8} {:<18} {:<8} {:<4} {:<6} {:<9}",
+        "file", "task", "rule", "motion", "sep", "prior", "draw"
+    );
     for count in &counts {
-        let name = if *count == 0 { "all".to_owned() } else { count.to_string() };
-        let _ = write!(text, " {name:>6}");
+        let _ = write!(text, " {:>6}", name(count));
     }
-    text += "   mean  detected s  in place s  violations  stops\n";
-    for (file, task, rule, prior) in lines {
-        let rows: Vec<&Row> = evaluation
-            .rows
-            .iter()
-            .filter(|row| {
-                (row.file.as_str(), row.task.as_str(), row.rule, row.prior) == (file, task, rule, prior)
-            })
-            .collect();
-        let mark = if rows.iter().any(|row| row.default) { "*" } else { "" };
-        let _ = write!(text, "{file:<16} {task:<8} {:<18} {prior:<6}", format!("{rule}{mark}"));
+    text += "  pooled   95 % interval  detected s  in place s  violations  stops\n";
+    for words in lines {
+        let rows: Vec<&Row> = evaluation.rows.iter().filter(|row| line(row) == words).collect();
+        let pool = evaluation.pooled.iter().find(|row| line(row) == words);
+        let Some(whole) = pool.or(rows.first().copied()) else { continue };
+        let Line { file, task, rule, motion, separation, prior, draw } = words;
+        let mark = if whole.default { "*" } else { "" };
+        let rule = format!("{rule}{mark}");
+        let _ =
+            write!(text, "{file:<16} {task:<8} {rule:<18} {motion:<8} {separation:<4} {prior:<6} {draw:<9}");
         for count in &counts {
             match rows.iter().find(|row| row.objects == *count) {
                 Some(row) => _ = write!(text, " {:>5.1}%", 100.0 * row.success),
                 None => text += "      –",
             }
         }
-        let mean = |of: fn(&Row) -> f64| rows.iter().map(|row| of(row)).sum::<f64>() / rows.len() as f64;
-        let total = |of: fn(&Row) -> u64| rows.iter().map(|row| of(row)).sum::<u64>();
+        let [low, high] = whole.ci95;
+        let total = |of: fn(&Row) -> u64| {
+            if rows.is_empty() { of(whole) } else { rows.iter().map(|row| of(row)).sum::<u64>() }
+        };
         let _ = writeln!(
             text,
-            " {:>5.1}% {:>11.2} {:>11.2} {:>11} {:>6}",
-            100.0 * mean(|row| row.success),
-            mean(|row| row.detection_s),
-            mean(|row| row.in_place_before_reach_s),
+            "  {:>5.1}%  {:>5.1} to {:>5.1} {:>11.2} {:>11.2} {:>11} {:>6}",
+            100.0 * whole.success,
+            100.0 * low,
+            100.0 * high,
+            whole.detection_s,
+            whole.in_place_before_reach_s,
             total(|row| row.violations),
             total(|row| row.stops),
         );
     }
+    text += &causes(evaluation);
+    text += &goals(evaluation);
+    for LeftOut { file, recordings, because } in &evaluation.left_out {
+        let _ = writeln!(text, "left out: {recordings} recordings of {file}: {because}");
+    }
     let faster = evaluation.simulated_secs / evaluation.wall_secs.max(1e-9);
     let _ = writeln!(
         text,
-        "* the server's default rule. {:.0} s of people in {:.1} s, {faster:.0} times as fast as they were.",
+        "* the server's default. {:.0} s of people in {:.1} s, {faster:.0} times as fast as they were.",
         evaluation.simulated_secs, evaluation.wall_secs
     );
     text
 }
+
+/// What a line of the terminal is about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Line<'a> {
+    file: &'a str,
+    task: &'a str,
+    rule: &'a str,
+    motion: &'a str,
+    separation: &'a str,
+    prior: &'a str,
+    draw: &'a str,
+}
+
+fn line(row: &Row) -> Line<'_> {
+    Line {
+        file: &row.file,
+        task: &row.task,
+        rule: row.rule,
+        motion: row.motion,
+        separation: row.separation,
+        prior: row.prior,
+        draw: row.draw,
+    }
+}
+
+/// Why trials failed, a line for each pool that has failures.
+fn causes(evaluation: &Evaluation) -> String {
+    let mut text = String::new();
+    for row in evaluation.pooled.iter().filter(|row| !row.blame.is_empty()) {
+        let failed = row.trials - row.successes;
+        let Line { file, task, rule, motion, separation, prior, draw } = line(row);
+        let _ = write!(
+            text,
+            "why {file} {task} {rule} {motion} {separation} {prior} {draw} failed {failed} times:"
+        );
+        for cause in Cause::ALL {
+            if let Some(count) = row.blame.get(cause.name()) {
+                let _ = write!(text, " {} {count}", cause.name());
+            }
+        }
+        text += "\n";
+    }
+    text
+}
+
+/// The goals that the pools of a file can be held against, rule on.
+fn goals(evaluation: &Evaluation) -> String {
+    let mut text = String::new();
+    let on = |row: &&Row| row.separation == "on" && row.v_h_mps == GOALS_V_H_MPS;
+    let last_of_file = |row: &&Row| {
+        row.task == "all" || !evaluation.pooled.iter().any(|r| r.file == row.file && r.task == "all")
+    };
+    for row in evaluation.pooled.iter().filter(on).filter(last_of_file) {
+        let least = match (row.rule, row.default, row.prior, row.draw) {
+            ("told", ..) => Some(98.5),
+            (_, true, "none", "hash") => Some(95.0),
+            (_, true, "none", "same-wall") => Some(90.0),
+            (_, true, "right", _) => Some(97.5),
+            (_, true, "wrong", _) => {
+                evaluation.without_prior(row).map(|success| 100.0 * success - WRONG_COSTS)
+            }
+            _ => None,
+        };
+        let Some(least) = least else { continue };
+        let success = 100.0 * row.success;
+        let verdict = if success >= least { "reached" } else { "missed" };
+        let Line { file, rule, motion, prior, draw, .. } = line(row);
+        let _ = writeln!(
+            text,
+            "goal {verdict}: {file} {rule} {motion} {prior} {draw} {success:.1} %, at least {least:.1} %"
+        );
+    }
+    let kept = || evaluation.rows.iter().filter(|row| row.separation == "on");
+    if kept().next().is_some() {
+        let breaches: u64 = kept().map(|row| row.separation_breaches).sum();
+        let verdict = if breaches == 0 { "reached" } else { "missed" };
+        let _ = writeln!(text, "goal {verdict}: {breaches} separation violations, at most 0");
+        let farthest =
+            kept().filter(|row| row.successes > 0).map(|row| row.distance_at_reach_m).fold(0.0, f64::max);
+        let verdict = if farthest < TOUCH_M { "reached" } else { "missed" };
+        let _ = writeln!(
+            text,
+            "goal {verdict}: column to goal at touch {:.2} cm in the worst row, under {:.1} cm",
+            100.0 * farthest,
+            100.0 * TOUCH_M
+        );
+    }
+    text
+}
+
+impl Evaluation {
+    /// The success of the same pool without a prior, over the numbers of objects that can have a wrong one.
+    fn without_prior(&self, pool: &Row) -> Option<f64> {
+        let like = |row: &&Row| {
+            let same = Line { prior: "none", task: &row.task, ..line(pool) } == line(row);
+            same && (pool.task == "all" || pool.task == row.task) && (2..=5).contains(&row.objects)
+        };
+        let rows = || self.rows.iter().filter(like);
+        let trials: usize = rows().map(|row| row.trials).sum();
+        (trials > 0).then(|| rows().map(|row| row.successes).sum::<usize>() as f64 / trials as f64)
+    }
+}
+
+/// The goals are for this speed, m/s.
+const GOALS_V_H_MPS: f64 = 1.6;
+/// A wrong prior may cost so many points.
+const WRONG_COSTS: f64 = 5.0;
+/// From the column to the goal at the touch, m.
+const TOUCH_M: f64 = 0.005;
 
 /// Names and values of a row, moments and intervals spread.
 fn flat(row: &Row) -> Result<Vec<(String, String)>, serde_json::Error> {
@@ -91,6 +211,12 @@ fn flat(row: &Row) -> Result<Vec<(String, String)>, serde_json::Error> {
             Value::Array(items) => {
                 for (end, item) in ["low", "high"].iter().zip(items) {
                     cells.push((format!("{name}_{end}"), plain(&item)));
+                }
+            }
+            Value::Object(counts) if name == "blame" => {
+                for cause in Cause::ALL {
+                    let count = counts.get(cause.name()).map(plain).unwrap_or_default();
+                    cells.push((format!("blame_{}", cause.name()), count));
                 }
             }
             // A moment that nobody reached has no key; its column stays.

@@ -2,46 +2,70 @@
 
 use std::sync::Arc;
 
-use covr_engine::engine::EngineConfig;
-use covr_engine::event::EventKind;
-use covr_engine::frames::{Floor, Planar};
+use covr_engine::engine::{EngineConfig, Request};
+use covr_engine::frames::{Floor, Pose, Room};
 use covr_engine::intention::{IntentionParameters, RuleName};
 use covr_engine::machine::Travel;
 use covr_engine::mode::Mode;
 use covr_engine::motion::MotionName;
-use covr_engine::observation::{Observation, PersonId};
+use covr_engine::observation::{Observation, PersonId, PoseSample};
 use covr_engine::safety::separation::KeptFrom;
-use covr_engine::safety::vetted::{Action, Vetted};
 use covr_engine::scene::{ObjectSpec, Scene, SceneProblem, SceneSpec, Shape};
 use covr_engine::time::{Span, Time};
 use covr_gantry::contract::Simulated;
 
 use super::belief::{BeliefTold, BeliefWatch};
-use super::headset::Headset;
-use super::{ClosedLoop, LinkProfile, TrueHead};
+use super::walk::Walk;
+use super::watch::ReachWatch;
+use super::{ClosedLoop, LinkProfile, Stepped, TrueHead};
 use crate::checker::Verdict;
 use crate::random::Random;
-use crate::trace::{HeadSample, Recording};
 
 /// A recorded reach and what it is replayed with.
 #[derive(Debug, Clone, Copy)]
 pub struct ReachTrial<'a> {
-    /// The person; a trial with a goal and a reach.
-    pub recording: &'a Recording,
+    /// The person; a recording with a goal.
+    pub walk: &'a Walk<'a>,
     /// The targets shown to the engine, as indices into the recording's; the goal is among them.
     pub targets: &'a [usize],
     /// The scenario prior of each of them; none: 1 for all.
     pub priors: Option<&'a [f64]>,
-    /// The intention rule.
-    pub rule: RuleName,
-    /// v_h of the separation rule, m/s.
-    pub v_h_mps: f64,
-    /// Poses a second.
-    pub pose_hz: f64,
+    /// How the engine decides.
+    pub conduct: Conduct<'a>,
+    /// From when the engine is told the goal, by the recording's clock; none: never.
+    pub told_from: Option<Time>,
     /// How poses travel.
     pub link: LinkProfile,
     /// Decides what the link does.
     pub seed: u64,
+}
+
+/// How the engine decides in a replay.
+#[derive(Debug, Clone, Copy)]
+pub struct Conduct<'a> {
+    /// The intention rule.
+    pub rule: RuleName,
+    /// Its numbers.
+    pub intention: &'a IntentionParameters,
+    /// How the column is moved.
+    pub motion: MotionName,
+    /// Whom the separation rule keeps the column from.
+    pub kept_from: KeptFrom,
+    /// v_h of that rule, m/s.
+    pub v_h_mps: f64,
+}
+
+/// One moment of a replay, for those who draw it.
+#[derive(Clone, Copy)]
+pub struct Glimpse<'a> {
+    /// When, by the recording's clock.
+    pub at: Time,
+    /// The head as it really was.
+    pub head: Pose<Room>,
+    /// What the step did.
+    pub stepped: Stepped,
+    /// The loop after it.
+    pub control: &'a ClosedLoop,
 }
 
 /// What came of it.
@@ -106,55 +130,52 @@ pub enum TrialProblem {
     },
 }
 
-impl ReachTrial<'_> {
-    /// Replay it with a machine that is homed and stands at its start at `from` on its clock.
-    pub fn run(&self, machine: Box<dyn Simulated>, from: Time) -> Result<TrialOutcome, TrialProblem> {
-        let trial = || self.recording.trial.clone();
-        let goal = self.recording.goal.ok_or_else(|| TrialProblem::NoGoal(trial()))?;
-        let goal = self
-            .targets
-            .iter()
-            .position(|&shown| shown == goal)
-            .ok_or_else(|| TrialProblem::GoalNotShown(trial()))?;
-        let reach = self.recording.events.reach.ok_or_else(|| TrialProblem::NoReach(trial()))?;
-        let first_frame = self.recording.frames.first().map_or(Time::ZERO, |frame| frame.at);
-        let begins = self
-            .recording
-            .events
-            .preview_end
-            .map_or(first_frame, |preview_end| preview_end - BEFORE_PREVIEW_END)
-            .max(first_frame);
-        let scene =
-            Arc::new(self.scene().map_err(|problems| TrialProblem::Scene { trial: trial(), problems })?);
-        let place = scene.objects()[goal].column_place();
-        let config = EngineConfig {
-            limits: machine.limits(),
-            travel: machine.travel(),
-            period: PERIOD,
-            intention_rule: self.rule,
-            intention: IntentionParameters::default(),
-            motion: MotionName::Proxy,
-            kept_from: KeptFrom::Everybody,
-            v_h_mps: self.v_h_mps,
-            latched_because: None,
-        };
-        let random = Random::seeded(self.seed);
-        let control = ClosedLoop::new(config, scene, machine, self.link, random, from);
-        let wall = self.recording.targets[self.targets[goal]].view_deg;
-        let on_wall = |&index: &usize| self.recording.targets[index].view_deg == wall;
+impl<'a> ReachTrial<'a> {
+    /// Replay it with a machine that is homed and stands where the trial begins.
+    pub fn run(&self, machine: Box<dyn Simulated>) -> Result<TrialOutcome, TrialProblem> {
+        self.run_watched(machine, &mut |_| ())
+    }
+
+    /// The same, with every step shown to `watcher`.
+    pub fn run_watched(
+        &self,
+        machine: Box<dyn Simulated>,
+        watcher: &mut dyn FnMut(Glimpse<'_>),
+    ) -> Result<TrialOutcome, TrialProblem> {
+        let recording = self.walk.recording();
+        let trial = || recording.trial.clone();
+        let goal = recording.goal.ok_or_else(|| TrialProblem::NoGoal(trial()))?;
+        let shown = |shown: &&usize| **shown == goal;
+        let shown = self.targets.iter().position(|index| shown(&index));
+        let goal = shown.ok_or_else(|| TrialProblem::GoalNotShown(trial()))?;
+        let scene = self.scene().map_err(|problems| TrialProblem::Scene { trial: trial(), problems })?;
+        let mut playback = Playback::new(self.walk, scene, &self.conduct, machine, self.link, self.seed)
+            .map_err(|mode| TrialProblem::NotArmed { trial: trial(), mode })?;
+        let wall = recording.targets[self.targets[goal]].view_deg;
+        let on_wall = |&index: &usize| recording.targets[index].view_deg == wall;
         let same_wall = wall.map(|_| self.targets.iter().map(on_wall).collect());
-        let belief = BeliefWatch::new(goal, same_wall, reach);
-        let mut playback = Playback::new(self, control, belief, begins, reach)
-            .ok_or_else(|| TrialProblem::NoFrames(trial()))?;
-        playback.warm_up().map_err(|mode| TrialProblem::NotArmed { trial: trial(), mode })?;
-        Ok(playback.play(place))
+        let place = playback.control.engine().scene().objects()[goal].column_place();
+        let belief = BeliefWatch::new(goal, same_wall, self.walk.ends());
+        let mut watch = ReachWatch::new(place, belief, self.walk.period());
+        let mut told_from = self.told_from;
+        while playback.at() <= self.walk.ends() {
+            if told_from.take_if(|from| playback.at() >= *from).is_some() {
+                playback.tell(goal);
+            }
+            let (at, stepped) = playback.step();
+            watch.see(at, &stepped, playback.control.engine().belief(), playback.control.engine().proxy());
+            watcher(Glimpse { at, head: playback.head.pose, stepped, control: &playback.control });
+        }
+        playback.control.drain_events().for_each(|event| watch.hear(&event));
+        let [true_verdict, commanded_verdict] = playback.control.take_verdicts();
+        Ok(watch.outcome(true_verdict, commanded_verdict))
     }
 
     /// The scene of the targets shown: spheres, the column without props.
     pub fn scene(&self) -> Result<Scene, Vec<SceneProblem>> {
-        let room_from_trace = self.recording.room_from_trace();
+        let room_from_trace = self.walk.recording().room_from_trace();
         let objects = self.targets.iter().enumerate().map(|(shown, &index)| {
-            let target = &self.recording.targets[index];
+            let target = &self.walk.recording().targets[index];
             ObjectSpec {
                 id: target.id.clone(),
                 position: room_from_trace.point(&target.position),
@@ -166,161 +187,90 @@ impl ReachTrial<'_> {
             }
         });
         let min = Floor::default();
-        let arena = Travel { min, max: min + self.recording.size_m() };
+        let arena = Travel { min, max: min + self.walk.recording().size_m() };
         Scene::build(SceneSpec::open(arena, objects.collect()))
     }
 }
 
-/// A recording played into a loop.
-struct Playback<'a> {
-    trial: &'a ReachTrial<'a>,
-    control: ClosedLoop,
-    headset: Headset,
-    belief: BeliefWatch,
-    /// The truth at every control period, and the poses that the headset sends, in the recording's time.
-    truth: std::iter::Peekable<crate::trace::Resampled<'a>>,
-    poses: std::iter::Peekable<crate::trace::Resampled<'a>>,
-    begins: Time,
-    reach: Time,
-    head: TrueHead,
+/// A walk played into a loop.
+pub(super) struct Playback<'a> {
+    pub control: ClosedLoop,
+    pub head: TrueHead,
+    walk: &'a Walk<'a>,
+    poses: std::slice::Iter<'a, PoseSample>,
+    truth: std::slice::Iter<'a, (Time, Pose<Room>)>,
 }
 
 impl<'a> Playback<'a> {
-    fn new(
-        trial: &'a ReachTrial<'a>,
-        control: ClosedLoop,
-        belief: BeliefWatch,
-        begins: Time,
-        reach: Time,
-    ) -> Option<Self> {
-        let mut truth = trial.recording.resampled_between(1.0 / PERIOD.secs(), begins, reach).peekable();
-        let poses = trial.recording.resampled_between(trial.pose_hz, begins, reach).peekable();
-        let first = *truth.peek()?;
-        let head = TrueHead { person: VISITOR, pose: trial.recording.room_from_trace().pose(&first.pose) };
-        let headset = Headset::new();
-        Some(Self { trial, control, headset, belief, truth, poses, begins, reach, head })
-    }
-
-    /// Armed with nobody there for as long as a soft start lasts, as in a session; then the person comes in.
-    fn warm_up(&mut self) -> Result<(), Mode> {
-        // The engine hears of the machine first.
-        self.control.step(&[]);
-        self.control.arm()?;
-        let until = self.control.now() + WARM_UP;
-        while self.control.now() < until {
-            self.control.step(&[]);
-        }
-        self.control.observe(Observation::PersonEntered(VISITOR));
-        self.control.drain_events();
-        Ok(())
-    }
-
-    fn play(mut self, place: Floor) -> TrialOutcome {
-        let room_from_trace = self.trial.recording.room_from_trace();
-        let started = self.control.now();
-        let in_recording = |now: Time| self.begins + (now - started);
-        let mut column_travel_m = 0.0;
-        let mut before: Option<Floor> = None;
-        let mut arrived_at: Option<Time> = None;
-        let mut fast_at: Option<Time> = None;
-        let mut last = (f64::INFINITY, started);
-        let mut peaks = Peaks::default();
-        let mut proxy_way = (0.0, 0.0);
-        while in_recording(self.control.now()) <= self.reach {
-            let now = self.control.now();
-            let due = |sample: &HeadSample| sample.at <= in_recording(now);
-            while let Some(sample) = self.poses.next_if(due) {
-                let pose = room_from_trace.pose(&sample.pose);
-                let taken_at = started + (sample.at - self.begins);
-                self.control.send(VISITOR, self.headset.seen(taken_at, &pose));
-            }
-            // In a gap of the recording the head stays where it was last seen.
-            while let Some(sample) = self.truth.next_if(due) {
-                self.head.pose = room_from_trace.pose(&sample.pose);
-            }
-            let stepped = self.control.step(&[self.head]);
-            let truth = stepped.truth;
-            self.belief.look(in_recording(now), self.control.engine().belief());
-            peaks.see(&stepped.command);
-            proxy_way.0 += self.control.engine().proxy().distance_m(truth.position);
-            proxy_way.1 += 1.0;
-            column_travel_m += before.map_or(0.0, |before| before.distance_m(truth.position));
-            before = Some(truth.position);
-            if truth.velocity.norm() >= AT_REST_MPS {
-                fast_at = Some(now);
-            }
-            let distance_m = truth.position.distance_m(place);
-            let in_place = distance_m <= WITHIN_M && truth.velocity.norm() < AT_REST_MPS;
-            arrived_at = if in_place { arrived_at.or(Some(now)) } else { None };
-            last = (distance_m, now);
-        }
-        let (distance_at_reach_m, ended) = last;
-        let within_10cm = distance_at_reach_m <= WITHIN_M;
-        let calm = fast_at.is_none_or(|fast_at| ended - fast_at >= CALM_FOR);
-        let events: Vec<_> = self.control.drain_events().collect();
-        let is_stop = |kind: &EventKind| {
-            matches!(
-                kind,
-                EventKind::ModeChanged { to: Mode::ProtectiveStop | Mode::LatchedStop | Mode::Faulted, .. }
-            )
+    /// Armed with nobody there, longer ago than a soft start lasts, as in a session; then the person comes in.
+    pub fn new(
+        walk: &'a Walk<'a>,
+        scene: Scene,
+        conduct: &Conduct<'_>,
+        machine: Box<dyn Simulated>,
+        link: LinkProfile,
+        seed: u64,
+    ) -> Result<Self, Mode> {
+        let config = EngineConfig {
+            limits: machine.limits(),
+            travel: machine.travel(),
+            period: walk.period(),
+            intention_rule: conduct.rule,
+            intention: conduct.intention.clone(),
+            motion: conduct.motion,
+            kept_from: conduct.kept_from,
+            v_h_mps: conduct.v_h_mps,
+            latched_because: None,
         };
-        TrialOutcome {
-            success: within_10cm && calm,
-            within_10cm,
-            distance_at_reach_m,
-            in_place_before_reach_secs: arrived_at.map_or(0.0, |at| (ended - at).secs()),
-            stops: events.iter().filter(|event| is_stop(&event.kind)).count() as u32,
-            column_travel_m,
-            peaks: peaks.greatest,
-            proxy_distance_m: proxy_way.0 / f64::max(proxy_way.1, 1.0),
-            belief: self.belief.told(),
-            simulated_secs: (ended - started).secs(),
-            true_verdict: self.control.true_verdict().clone(),
-            commanded_verdict: self.control.commanded_verdict().clone(),
-        }
+        let random = Random::seeded(seed);
+        let mut control = ClosedLoop::new(config, Arc::new(scene), machine, link, random, STARTS);
+        control.armed_standing(ARMED_FOR)?;
+        control.observe(Observation::PersonEntered(VISITOR));
+        control.drain_events();
+        let pose = walk.truth()[0].1;
+        let head = TrueHead { person: VISITOR, pose };
+        Ok(Self { control, head, walk, poses: walk.poses().iter(), truth: walk.truth().iter() })
     }
-}
 
-/// Greatest commanded speed, acceleration and jerk of an axis.
-#[derive(Default)]
-struct Peaks {
-    greatest: [f64; 3],
-    before: Option<Planar>,
-}
+    /// When the next step will be, by the recording's clock.
+    pub fn at(&self) -> Time {
+        self.walk.begins() + (self.control.now() - STARTS)
+    }
 
-impl Peaks {
-    fn see(&mut self, command: &Vetted) {
-        let Action::Track(setpoint) = command.action() else {
-            self.before = None;
-            return;
-        };
-        let jerk = self.before.map_or(Planar::ZERO, |a| (setpoint.acceleration - a) * (1.0 / PERIOD.secs()));
-        self.before = Some(setpoint.acceleration);
-        for (greatest, now) in self.greatest.iter_mut().zip([setpoint.velocity, setpoint.acceleration, jerk])
-        {
-            *greatest = greatest.max(now.x.abs()).max(now.y.abs());
+    /// One period. In a gap of the recording the head stays where it was last seen.
+    pub fn step(&mut self) -> (Time, Stepped) {
+        let at = self.at();
+        while let Some(sample) = self.poses.as_slice().first().filter(|sample| sample.taken_at <= at) {
+            let taken_at = STARTS + (sample.taken_at - self.walk.begins());
+            self.control.send(VISITOR, PoseSample { taken_at, ..*sample });
+            self.poses.next();
         }
+        while let Some((_, pose)) = self.truth.as_slice().first().filter(|(then, _)| *then <= at) {
+            self.head.pose = *pose;
+            self.truth.next();
+        }
+        (at, self.control.step(&[self.head]))
+    }
+
+    /// The goal is known from now on: every other object has no prior.
+    pub fn tell(&mut self, goal: usize) {
+        let count = self.control.engine().priors().len();
+        let changes = (0..count).map(|index| (index, if index == goal { 1.0 } else { 0.0 })).collect();
+        self.control.request(Request::SetPriors(changes));
     }
 }
 
 const VISITOR: PersonId = PersonId(1);
-const PERIOD: Span = Span::from_millis(4);
-/// The replay begins this long before the scene is hidden.
-const BEFORE_PREVIEW_END: Span = Span::from_millis(2_000);
+/// The loop's clock when the person comes in.
+const STARTS: Time = Time::from_micros(10_000_000);
 /// Longer than a soft start lasts at the paper's speed.
-const WARM_UP: Span = Span::from_millis(2_000);
-/// How near the column's centre must be, m.
-const WITHIN_M: f64 = 0.1;
-/// How slow, m/s.
-const AT_REST_MPS: f64 = 0.05;
-/// For how long.
-const CALM_FOR: Span = Span::from_millis(200);
+const ARMED_FOR: Span = Span::from_millis(2_000);
 
 #[cfg(test)]
 mod tests {
-    use super::super::bring_to;
+    use super::super::walk::{Pace, TrackingNoise};
     use super::*;
-    use crate::trace::Recordings;
+    use crate::trace::{Recording, Recordings};
     use covr_engine::machine::Limits;
     use covr_gantry::ideal::IdealMachine;
     use std::fmt::Write;
@@ -348,21 +298,40 @@ mod tests {
         Recordings::from_lines(Path::new("made"), Box::new(Cursor::new(line))).next().unwrap().unwrap()
     }
 
-    fn run(recording: &Recording, targets: &[usize], start: Floor) -> TrialOutcome {
-        let travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
-        let mut machine = IdealMachine::new(Limits::PAPER, travel, travel.centre());
-        let from = bring_to(&mut machine, start, Time::ZERO).unwrap();
-        let trial = ReachTrial {
-            recording,
-            targets,
-            priors: None,
+    const TRAVEL: Travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
+
+    const PACE: Pace = Pace {
+        period: Span::from_millis(4),
+        pose_hz: 75.0,
+        noise: TrackingNoise { position_m: 0.0, rotation_rad: 0.0 },
+        seed: 1,
+    };
+
+    fn prepared(recording: &Recording) -> Result<Walk<'_>, TrialProblem> {
+        Walk::of_reach(recording, &PACE)
+    }
+
+    fn outcome(
+        walk: &Walk<'_>,
+        targets: &[usize],
+        machine: IdealMachine,
+        told_from: Option<Time>,
+    ) -> Result<TrialOutcome, TrialProblem> {
+        let conduct = Conduct {
             rule: RuleName::Paper,
+            intention: &IntentionParameters::default(),
+            motion: MotionName::Proxy,
+            kept_from: KeptFrom::Everybody,
             v_h_mps: 1.6,
-            pose_hz: 75.0,
-            link: LinkProfile::WIRELESS,
-            seed: 1,
         };
-        trial.run(Box::new(machine), from).unwrap()
+        let link = LinkProfile::WIRELESS;
+        let trial = ReachTrial { walk, targets, priors: None, conduct, told_from, link, seed: 1 };
+        trial.run(Box::new(machine))
+    }
+
+    fn run(recording: &Recording, targets: &[usize], start: Floor) -> TrialOutcome {
+        let machine = IdealMachine::standing(Limits::PAPER, TRAVEL, start);
+        outcome(&prepared(recording).unwrap(), targets, machine, None).unwrap()
     }
 
     #[test]
@@ -388,30 +357,34 @@ mod tests {
 
     #[test]
     fn a_recording_without_goal_or_reach_is_refused_by_name() {
-        let travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
-        let refused = |recording: &Recording, targets: &[usize]| {
-            let machine = Box::new(IdealMachine::new(Limits::PAPER, travel, travel.centre()));
-            let trial = ReachTrial {
-                recording,
-                targets,
-                priors: None,
-                rule: RuleName::Paper,
-                v_h_mps: 1.6,
-                pose_hz: 75.0,
-                link: LinkProfile::PERFECT,
-                seed: 1,
-            };
-            trial.run(machine, Time::ZERO).unwrap_err()
+        let refused = |recording: &Recording, targets: &[usize], machine: IdealMachine| {
+            prepared(recording).and_then(|walk| outcome(&walk, targets, machine, None)).unwrap_err()
         };
+        let machine = || IdealMachine::standing(Limits::PAPER, TRAVEL, TRAVEL.centre());
         let good = walk(2.0);
-        assert_eq!(refused(&good, &[1]), TrialProblem::GoalNotShown("walk".into()));
-        assert_eq!(
-            refused(&Recording { goal: None, ..good.clone() }, &[0]),
-            TrialProblem::NoGoal("walk".into())
-        );
+        assert_eq!(refused(&good, &[1], machine()), TrialProblem::GoalNotShown("walk".into()));
+        let aimless = Recording { goal: None, ..good.clone() };
+        assert_eq!(refused(&aimless, &[0], machine()), TrialProblem::NoGoal("walk".into()));
         let endless = Recording { events: Default::default(), ..good.clone() };
-        assert_eq!(refused(&endless, &[0]), TrialProblem::NoReach("walk".into()));
-        // Not homed: it cannot be armed.
-        assert!(matches!(refused(&good, &[0]), TrialProblem::NotArmed { mode: Mode::Disarmed, .. }));
+        assert_eq!(refused(&endless, &[0], machine()), TrialProblem::NoReach("walk".into()));
+        let not_homed = IdealMachine::new(Limits::PAPER, TRAVEL, TRAVEL.centre());
+        let refused = refused(&good, &[0], not_homed);
+        assert!(matches!(refused, TrialProblem::NotArmed { mode: Mode::Disarmed, .. }));
+    }
+
+    #[test]
+    fn whoever_is_told_the_goal_on_the_way_believes_in_it_from_then_on() {
+        let recording = walk(4.0);
+        let prepared = prepared(&recording).unwrap();
+        let told_from = |secs: f64| {
+            let machine = IdealMachine::standing(Limits::PAPER, TRAVEL, TRAVEL.centre());
+            // The goal is the one that nobody looks at.
+            let aside = Recording { goal: Some(1), ..recording.clone() };
+            let walk = Walk::of_reach(&aside, &PACE).unwrap();
+            let told_from = Some(prepared.begins() + Span::from_secs(secs));
+            outcome(&walk, &[0, 1], machine, told_from).unwrap().belief.detected_before_reach_secs
+        };
+        let detected = told_from(3.0).unwrap();
+        assert!((detected - 2.0).abs() < 0.05, "{detected}");
     }
 }

@@ -1,0 +1,158 @@
+//! Who is evaluated: recorded reaches, and whole sessions.
+
+use std::path::{Path, PathBuf};
+
+use covr_engine::frames::{Floor, Planar, Point};
+use covr_engine::machine::Travel;
+
+use super::row::LeftOut;
+use super::run::EvaluationProblem;
+use crate::trace::{HEAD_HEIGHT_M, Heights, Recording, Recordings, Target, trace_files};
+
+/// Recorded reaches and sessions, by file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Subjects {
+    pub(super) reaches: Vec<Reach>,
+    pub(super) left_out: Vec<LeftOut>,
+}
+
+/// One recorded reach.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Reach {
+    pub file: String,
+    pub recording: Recording,
+    pub goal: usize,
+    /// Where the column begins: this person's goal before, in the recording's room.
+    pub column: Floor,
+}
+
+impl Subjects {
+    /// Read files and folders of traces. What has no goals is left out, and listed so.
+    pub fn read(paths: &[PathBuf]) -> Result<Self, EvaluationProblem> {
+        let mut subjects = Self { reaches: Vec::new(), left_out: Vec::new() };
+        for path in paths {
+            for file in trace_files(path)? {
+                let name = stem(&file);
+                for recording in Recordings::open(&file)? {
+                    subjects.take(&name, with_horizontal_angles(recording?));
+                }
+            }
+        }
+        if subjects.reaches.is_empty() { Err(EvaluationProblem::Nothing) } else { Ok(subjects) }
+    }
+
+    /// Reaches made elsewhere, in order.
+    pub fn of_recordings(file: &str, recordings: impl IntoIterator<Item = Recording>) -> Self {
+        let mut subjects = Self { reaches: Vec::new(), left_out: Vec::new() };
+        recordings.into_iter().for_each(|recording| subjects.take(file, recording));
+        subjects
+    }
+
+    /// The first so many reaches alone.
+    pub fn first(mut self, reaches: usize) -> Self {
+        self.reaches.truncate(reaches);
+        self
+    }
+
+    fn take(&mut self, file: &str, recording: Recording) {
+        match recording.goal.filter(|_| recording.events.reach.is_some()) {
+            Some(goal) => {
+                let column = column_start(&self.reaches, &recording);
+                self.reaches.push(Reach { file: file.to_owned(), recording, goal, column });
+            }
+            None => self.leave_out(file, "no goal and no reach"),
+        }
+    }
+
+    fn leave_out(&mut self, file: &str, because: &'static str) {
+        match self.left_out.iter_mut().find(|out| out.file == file && out.because == because) {
+            Some(out) => out.recordings += 1,
+            None => self.left_out.push(LeftOut { file: file.to_owned(), recordings: 1, because }),
+        }
+    }
+}
+
+/// What the person was asked to do.
+pub(super) fn task(recording: &Recording) -> &str {
+    recording.mode.as_deref().unwrap_or("none")
+}
+
+/// Where the column can stand in a recording's room.
+pub(super) fn travel(recording: &Recording) -> Travel {
+    Travel { min: Floor::default(), max: Floor::default() + recording.size_m() }
+}
+
+/// Where heights are not known, heads and targets are put at one height, so that angles are those over the floor; and
+/// targets that lie nearer than a prop is wide are one target.
+fn with_horizontal_angles(mut recording: Recording) -> Recording {
+    if recording.heights != Heights::UnknownOffset {
+        return recording;
+    }
+    recording.heights = Heights::Missing;
+    for frame in &mut recording.frames {
+        (frame.z_m, frame.pitch_rad) = (None, None);
+    }
+    let mut kept: Vec<Target> = Vec::new();
+    let merged: Vec<usize> = std::mem::take(&mut recording.targets)
+        .into_iter()
+        .map(|mut target| {
+            target.position = Point::new(target.position.x(), target.position.y(), HEAD_HEIGHT_M);
+            let near = |other: &Target| other.position.distance_m(&target.position) < MERGED_WITHIN_M;
+            kept.iter().position(near).unwrap_or_else(|| {
+                kept.push(target);
+                kept.len() - 1
+            })
+        })
+        .collect();
+    recording.targets = kept;
+    recording.goal = recording.goal.map(|goal| merged[goal]);
+    recording.visits.iter_mut().for_each(|visit| visit.goal = merged[visit.goal]);
+    recording
+}
+
+/// The goal of the trial before of this person and task; for the first the arena's centre and a metre off.
+fn column_start(before: &[Reach], recording: &Recording) -> Floor {
+    let travel = travel(recording);
+    let last = before
+        .iter()
+        .rev()
+        .find(|reach| reach.recording.user == recording.user && reach.recording.mode == recording.mode);
+    let place = last.map_or(travel.centre() + Planar::new(1.0, 1.0), |reach| {
+        reach.recording.room_from_trace().point(&reach.recording.targets[reach.goal].position).floor()
+    });
+    travel.shrunk(TRAVEL_MARGIN_M).clamped(place)
+}
+
+/// The file's name up to its first dot.
+fn stem(file: &Path) -> String {
+    let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    name.split('.').next().unwrap_or_default().to_owned()
+}
+
+/// Inside the engine's own margin to the travel limits, m.
+const TRAVEL_MARGIN_M: f64 = 0.05;
+/// Targets of unknown height nearer to each other than this are one, m.
+const MERGED_WITHIN_M: f64 = 0.2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Cursor;
+
+    #[test]
+    fn targets_of_unknown_height_are_merged_and_seen_over_the_floor() {
+        let line = r#"{"dataset":"pearl","trial":"01/V1","user":"01","arena":{"x":[0,4],"y":[0,4]},"goal":"B",
+            "targets":[{"id":"A","x":1,"y":1,"z":-0.3,"r":0.35},{"id":"B","x":1.1,"y":1.1,"z":-0.3,"r":0.35},{"id":"C","x":3,"y":1,"z":-0.3,"r":0.35}],
+            "events":{"leave":1.0,"reach":4.0},"cols":["t_ms","x_mm","y_mm","z_mm","yaw_mrad","pitch_mrad"],
+            "frames":[[0,2000,2000,19,0,-300],[33,2000,2000,25,0,-300]]}"#;
+        let line = line.replace('\n', " ");
+        let read = Recordings::from_lines(Path::new("made"), Box::new(Cursor::new(line))).next().unwrap();
+        let recording = with_horizontal_angles(read.unwrap());
+        let ids: Vec<&str> = recording.targets.iter().map(|target| target.id.as_str()).collect();
+        assert_eq!((ids, recording.goal), (vec!["A", "C"], Some(0)));
+        let room_from_trace = recording.room_from_trace();
+        let head = room_from_trace.pose(&recording.resampled(75.0).next().unwrap().pose);
+        assert_eq!(head.position.z(), room_from_trace.point(&recording.targets[1].position).z());
+        assert_eq!(head.view().z, 0.0);
+    }
+}

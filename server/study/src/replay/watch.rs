@@ -1,0 +1,128 @@
+//! One reach, watched: where the column was and what the rule believed, until the hand arrived.
+
+use covr_engine::event::{Event, EventKind};
+use covr_engine::frames::{Floor, Planar};
+use covr_engine::intention::Belief;
+use covr_engine::mode::Mode;
+use covr_engine::safety::vetted::{Action, Vetted};
+use covr_engine::time::{Span, Time};
+
+use super::Stepped;
+use super::belief::BeliefWatch;
+use super::trial::TrialOutcome;
+use crate::checker::Verdict;
+
+/// Watches one reach. Times are the recording's.
+#[derive(Debug)]
+pub(super) struct ReachWatch {
+    place: Floor,
+    belief: BeliefWatch,
+    began: Option<Time>,
+    before: Option<Floor>,
+    arrived_at: Option<Time>,
+    fast_at: Option<Time>,
+    last: (f64, Time),
+    column_travel_m: f64,
+    peaks: Peaks,
+    proxy_way: (f64, u32),
+    stops: u32,
+}
+
+impl ReachWatch {
+    /// `place` is where the column serves the goal.
+    pub fn new(place: Floor, belief: BeliefWatch, period: Span) -> Self {
+        Self {
+            place,
+            belief,
+            began: None,
+            before: None,
+            arrived_at: None,
+            fast_at: None,
+            last: (f64::INFINITY, Time::ZERO),
+            column_travel_m: 0.0,
+            peaks: Peaks { greatest: [0.0; 3], before: None, period },
+            proxy_way: (0.0, 0),
+            stops: 0,
+        }
+    }
+
+    /// One step, at a moment of the recording.
+    pub fn see(&mut self, at: Time, stepped: &Stepped, belief: Option<&Belief>, proxy: Floor) {
+        let truth = stepped.truth;
+        self.began = self.began.or(Some(at));
+        self.belief.look(at, belief);
+        self.peaks.see(&stepped.command);
+        self.proxy_way.0 += proxy.distance_m(truth.position);
+        self.proxy_way.1 += 1;
+        self.column_travel_m += self.before.map_or(0.0, |before| before.distance_m(truth.position));
+        self.before = Some(truth.position);
+        let moves = truth.velocity.norm() >= AT_REST_MPS;
+        if moves {
+            self.fast_at = Some(at);
+        }
+        let distance_m = truth.position.distance_m(self.place);
+        self.arrived_at = if distance_m <= WITHIN_M && !moves { self.arrived_at.or(Some(at)) } else { None };
+        self.last = (distance_m, at);
+    }
+
+    /// What happened in the engine.
+    pub fn hear(&mut self, event: &Event) {
+        let stops = matches!(
+            event.kind,
+            EventKind::ModeChanged { to: Mode::ProtectiveStop | Mode::LatchedStop | Mode::Faulted, .. }
+        );
+        self.stops += u32::from(stops);
+    }
+
+    /// The hand has arrived.
+    pub fn outcome(self, true_verdict: Verdict, commanded_verdict: Verdict) -> TrialOutcome {
+        let (distance_at_reach_m, ended) = self.last;
+        let within_10cm = distance_at_reach_m <= WITHIN_M;
+        let calm = self.fast_at.is_none_or(|fast_at| ended - fast_at >= CALM_FOR);
+        TrialOutcome {
+            success: within_10cm && calm,
+            within_10cm,
+            distance_at_reach_m,
+            in_place_before_reach_secs: self.arrived_at.map_or(0.0, |at| (ended - at).secs()),
+            stops: self.stops,
+            column_travel_m: self.column_travel_m,
+            peaks: self.peaks.greatest,
+            proxy_distance_m: self.proxy_way.0 / f64::from(self.proxy_way.1.max(1)),
+            belief: self.belief.told(),
+            simulated_secs: self.began.map_or(0.0, |began| (ended - began).secs()),
+            true_verdict,
+            commanded_verdict,
+        }
+    }
+}
+
+/// Greatest commanded speed, acceleration and jerk of an axis.
+#[derive(Debug)]
+struct Peaks {
+    greatest: [f64; 3],
+    before: Option<Planar>,
+    period: Span,
+}
+
+impl Peaks {
+    fn see(&mut self, command: &Vetted) {
+        let Action::Track(setpoint) = command.action() else {
+            self.before = None;
+            return;
+        };
+        let per_sec = 1.0 / self.period.secs();
+        let jerk = self.before.map_or(Planar::ZERO, |a| (setpoint.acceleration - a) * per_sec);
+        self.before = Some(setpoint.acceleration);
+        let now = [setpoint.velocity, setpoint.acceleration, jerk];
+        for (greatest, now) in self.greatest.iter_mut().zip(now) {
+            *greatest = greatest.max(now.x.abs()).max(now.y.abs());
+        }
+    }
+}
+
+/// How near the column's centre must be, m.
+const WITHIN_M: f64 = 0.1;
+/// How slow, m/s.
+const AT_REST_MPS: f64 = 0.05;
+/// For how long.
+const CALM_FOR: Span = Span::from_millis(200);
