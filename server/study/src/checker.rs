@@ -137,8 +137,12 @@ impl Checker {
         }
     }
 
-    /// The scene changed: other props on the column, other keep-outs. Everything appears anew.
+    /// The scene changed. With other props on the column or other keep-outs everything appears anew; with the same
+    /// nothing does, so that a change of objects alone opens no allowance.
     pub fn change_shapes(&mut self, footprint: Vec<Rectangle>, keep_outs: Vec<KeepOutShape>) {
+        if self.rules.footprint == footprint && self.rules.keep_outs == keep_outs {
+            return;
+        }
         self.rules.footprint = footprint;
         self.rules.keep_outs = keep_outs;
         self.separation.forget_subjects();

@@ -7,15 +7,19 @@
 
 mod blame;
 mod draw;
+mod explain;
 mod plan;
 mod row;
 mod rows;
 mod run;
+mod session;
 mod subjects;
+mod synthetic;
 mod tables;
 
 pub use blame::Cause;
 pub use draw::Draw;
+pub use explain::{Explanation, explain};
 pub use plan::{
     Conditions, MachineKind, Objects, Plan, PlanProblem, Prior, RuleChoice, SeparationChoice, motion,
 };

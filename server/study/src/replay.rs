@@ -6,6 +6,7 @@
 mod belief;
 mod headset;
 mod link;
+mod session;
 mod trial;
 mod walk;
 mod watch;
@@ -27,6 +28,7 @@ use crate::checker::{Checker, Moment, Motion, PersonNow, Rectangle, Rules, Track
 use crate::random::Random;
 pub use belief::{BeliefThen, BeliefTold, LOOKS_BEFORE_REACH_SECS};
 pub use link::{LinkProfile, PoseLink};
+pub use session::{SessionReplay, VisitPlan};
 pub use trial::{Conduct, Glimpse, ReachTrial, TrialOutcome, TrialProblem};
 pub use walk::{Pace, TrackingNoise, Walk};
 

@@ -120,6 +120,13 @@ pub(super) struct Judged {
     pub cause: Option<Cause>,
 }
 
+impl Judged {
+    /// Virtual time, s.
+    pub fn secs(&self) -> f64 {
+        self.outcome.simulated_secs
+    }
+}
+
 /// What a row is about.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RowKey {

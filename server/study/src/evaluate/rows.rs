@@ -2,21 +2,15 @@
 
 use super::plan::{Objects, Plan, Prior, RuleChoice};
 use super::row::{Judged, Row, RowKey};
-use super::run::Cell;
-use super::subjects::{Reach, task};
+use super::run::{Case, Cell};
 
 /// A row for each file, task and cell.
-pub(super) fn rows(
-    plan: &Plan,
-    cells: &[Cell],
-    reaches: &[&Reach],
-    outcomes: &[Vec<Option<Judged>>],
-) -> Vec<Row> {
+pub(super) fn rows(plan: &Plan, cells: &[Cell], cases: &[Case<'_>]) -> Vec<Row> {
     let mut rows = Vec::new();
-    for (file, task_name) in groups(reaches) {
+    for (file, task_name) in groups(cases) {
         for (column, cell) in cells.iter().enumerate() {
-            let of_group: Vec<&Judged> = members(reaches, file, Some(task_name))
-                .filter_map(|reach| outcomes[reach].get(column)?.as_ref())
+            let of_group: Vec<&Judged> = members(cases, file, Some(task_name))
+                .filter_map(|case| case.by_cell.get(column)?.as_ref())
                 .collect();
             if !of_group.is_empty() {
                 rows.push(Row::of(key(plan, cell, file, task_name), &of_group));
@@ -27,13 +21,8 @@ pub(super) fn rows(
 }
 
 /// The same pooled over the numbers of objects up to 5: by task, and over every task of a file with several.
-pub(super) fn pooled(
-    plan: &Plan,
-    cells: &[Cell],
-    reaches: &[&Reach],
-    outcomes: &[Vec<Option<Judged>>],
-) -> Vec<Row> {
-    let groups = groups(reaches);
+pub(super) fn pooled(plan: &Plan, cells: &[Cell], cases: &[Case<'_>]) -> Vec<Row> {
+    let groups = groups(cases);
     let mut pools: Vec<(&str, Option<&str>)> = Vec::new();
     for (number, (file, task_name)) in groups.iter().enumerate() {
         pools.push((file, Some(task_name)));
@@ -62,8 +51,8 @@ pub(super) fn pooled(
                             || alone && is_alike(&Cell { prior: one.prior, ..*cell }, one))
                 })
                 .collect();
-            let of_pool: Vec<&Judged> = members(reaches, file, task_name)
-                .flat_map(|reach| columns.iter().filter_map(move |&column| outcomes[reach][column].as_ref()))
+            let of_pool: Vec<&Judged> = members(cases, file, task_name)
+                .flat_map(|case| columns.iter().filter_map(|&column| case.by_cell[column].as_ref()))
                 .collect();
             if !of_pool.is_empty() {
                 let key = RowKey { objects: 0, ..key(plan, one, file, task_name.unwrap_or("all")) };
@@ -75,10 +64,10 @@ pub(super) fn pooled(
 }
 
 /// Files and tasks, in the order in which they come.
-fn groups<'a>(reaches: &[&'a Reach]) -> Vec<(&'a str, &'a str)> {
+fn groups<'a>(cases: &[Case<'a>]) -> Vec<(&'a str, &'a str)> {
     let mut groups = Vec::new();
-    for reach in reaches {
-        let group = (reach.file.as_str(), task(&reach.recording));
+    for case in cases {
+        let group = (case.file, case.task);
         if !groups.contains(&group) {
             groups.push(group);
         }
@@ -87,14 +76,11 @@ fn groups<'a>(reaches: &[&'a Reach]) -> Vec<(&'a str, &'a str)> {
 }
 
 fn members<'a>(
-    reaches: &'a [&Reach],
+    cases: &'a [Case<'_>],
     file: &'a str,
     task_name: Option<&'a str>,
-) -> impl Iterator<Item = usize> + 'a {
-    (0..reaches.len()).filter(move |&index| {
-        let reach = reaches[index];
-        reach.file == file && task_name.is_none_or(|name| task(&reach.recording) == name)
-    })
+) -> impl Iterator<Item = &'a Case<'a>> {
+    cases.iter().filter(move |case| case.file == file && task_name.is_none_or(|name| case.task == name))
 }
 
 fn key(plan: &Plan, cell: &Cell, file: &str, task_name: &str) -> RowKey {

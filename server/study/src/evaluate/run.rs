@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
+use covr_engine::frames::Floor;
 use covr_engine::intention::IntentionParameters;
-use covr_engine::machine::{AxisLimits, Limits};
+use covr_engine::machine::{AxisLimits, Limits, Travel};
 use covr_engine::motion::MotionName;
 use covr_engine::time::Time;
 use covr_gantry::contract::Simulated;
@@ -18,9 +19,10 @@ use super::draw::Draw;
 use super::plan::{Conditions, MachineKind, Objects, Plan, Prior, RuleChoice, SeparationChoice};
 use super::row::{Evaluation, Judged};
 use super::rows::{pooled, rows};
-use super::subjects::{Reach, Subjects, task, travel};
+use super::session::visits_by_cell;
+use super::subjects::{Reach, Session, Subjects, task, travel};
 use crate::replay::{Conduct, Glimpse, Pace, ReachTrial, TrialOutcome, TrialProblem, Walk};
-use crate::trace::TraceError;
+use crate::trace::{Recording, TraceError};
 
 /// Why there is no evaluation.
 #[derive(Debug, thiserror::Error)]
@@ -31,6 +33,14 @@ pub enum EvaluationProblem {
     /// No trial is left.
     #[error("found no trial with a goal and a reach among the recordings that were asked for")]
     Nothing,
+    /// No trial of that name.
+    #[error("trial: found `{trial}`, expected the name of a recorded reach, such as `{like}`")]
+    NoTrial {
+        /// What was said.
+        trial: String,
+        /// What could have been.
+        like: String,
+    },
     /// A trial cannot be replayed.
     #[error(transparent)]
     Trial(#[from] TrialProblem),
@@ -61,8 +71,11 @@ pub fn sweep(
     progress: Progress<'_>,
 ) -> Result<Vec<Evaluation>, EvaluationProblem> {
     let cells = cells(plan);
-    let reaches: Vec<&Reach> = subjects.reaches.iter().filter(|reach| is_chosen(reach, plan)).collect();
-    if reaches.is_empty() {
+    let chosen = |recording: &Recording| is_chosen(recording, plan);
+    let reaches = subjects.reaches.iter().filter(|reach| chosen(&reach.recording)).map(Job::Reach);
+    let sessions = subjects.sessions.iter().filter(|session| chosen(&session.recording)).map(Job::Session);
+    let jobs: Vec<Job<'_>> = reaches.chain(sessions).collect();
+    if jobs.is_empty() {
         return Err(EvaluationProblem::Nothing);
     }
     let next = AtomicUsize::new(0);
@@ -70,12 +83,12 @@ pub fn sweep(
     let work = || {
         let mut mine = Vec::new();
         loop {
-            let job = next.fetch_add(1, Ordering::Relaxed);
-            let Some(reach) = reaches.get(job) else { return mine };
-            let outcomes = with_each(plan, intentions, &cells, reach);
-            let of_reach = cells.len() * intentions.len();
-            progress(done.fetch_add(of_reach, Ordering::Relaxed) + of_reach, of_reach * reaches.len());
-            mine.push((job, outcomes));
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            let Some(job) = jobs.get(number) else { return mine };
+            let outcomes = with_each(plan, intentions, &cells, job);
+            let replays = cells.len() * intentions.len();
+            progress(done.fetch_add(replays, Ordering::Relaxed) + replays, replays * jobs.len());
+            mine.push((number, outcomes));
         }
     };
     let cores = thread::available_parallelism().map_or(1, usize::from);
@@ -90,22 +103,44 @@ pub fn sweep(
     });
     results.sort_by_key(|(job, _)| *job);
     let outcomes = results.into_iter().map(|(_, outcome)| outcome).collect::<Result<Vec<_>, _>>()?;
-    let mut of_each: Vec<Vec<Vec<Option<Judged>>>> = intentions.iter().map(|_| Vec::new()).collect();
-    for of_reach in outcomes {
-        of_each.iter_mut().zip(of_reach).for_each(|(of_one, judged)| of_one.push(judged));
+    let mut of_each: Vec<Vec<Case<'_>>> = intentions.iter().map(|_| Vec::new()).collect();
+    for (job, outcomes) in jobs.iter().zip(outcomes) {
+        let (file, recording) = match job {
+            Job::Reach(reach) => (&reach.file, &reach.recording),
+            Job::Session(session) => (&session.file, &session.recording),
+        };
+        for (of_one, cases) in of_each.iter_mut().zip(outcomes) {
+            let case = |by_cell| Case { file, task: task(recording), by_cell };
+            of_one.extend(cases.into_iter().map(case));
+        }
     }
-    let evaluation = |outcomes: Vec<Vec<Option<Judged>>>| Evaluation {
+    let evaluation = |cases: Vec<Case<'_>>| Evaluation {
         schema: "covr.evaluation.v1",
         version: env!("CARGO_PKG_VERSION"),
         limits: limits_in_words(plan),
         wall_secs: 0.0,
-        simulated_secs: outcomes.iter().flatten().flatten().map(|judged| judged.outcome.simulated_secs).sum(),
+        simulated_secs: cases.iter().flat_map(|case| case.by_cell.iter().flatten()).map(Judged::secs).sum(),
         conditions: conditions_in_words(&plan.conditions),
         left_out: subjects.left_out.clone(),
-        rows: rows(plan, &cells, &reaches, &outcomes),
-        pooled: pooled(plan, &cells, &reaches, &outcomes),
+        rows: rows(plan, &cells, &cases),
+        pooled: pooled(plan, &cells, &cases),
     };
     Ok(of_each.into_iter().map(evaluation).collect())
+}
+
+/// What a thread takes at once.
+#[derive(Debug, Clone, Copy)]
+enum Job<'a> {
+    Reach(&'a Reach),
+    Session(&'a Session),
+}
+
+/// One reach, of a trial or in a session, and what became of it in each cell.
+#[derive(Debug, Clone)]
+pub(super) struct Case<'a> {
+    pub file: &'a str,
+    pub task: &'a str,
+    pub by_cell: Vec<Option<Judged>>,
 }
 
 /// One combination of the plan.
@@ -153,24 +188,19 @@ impl<'a> Course<'a> {
         watcher: &mut dyn FnMut(Glimpse<'_>),
     ) -> Result<TrialOutcome, EvaluationProblem> {
         let priors = self.priors();
-        let conduct = Conduct {
-            rule: self.cell.rule.engine_rule(),
-            intention: self.intention,
-            motion: self.cell.motion,
-            kept_from: self.cell.separation.kept_from(),
-            v_h_mps: self.plan.v_h_mps,
-        };
         let targets = self.targets();
         let trial = ReachTrial {
             walk: self.walk,
             targets: &targets,
             priors: Some(&priors),
-            conduct,
+            conduct: conduct(self.plan, &self.cell, self.intention),
             told_from: self.told_from,
             link: self.conditions.link(),
             seed: SEED,
         };
-        Ok(trial.run_watched(self.machine()?, watcher)?)
+        let (travel, place) = (travel(&self.reach.recording), self.reach.column);
+        let machine = machine(self.machine, self.limits, travel, place)?;
+        Ok(trial.run_watched(machine, watcher)?)
     }
 
     /// The same with poses as they were recorded; none where they are.
@@ -199,13 +229,7 @@ impl<'a> Course<'a> {
             Prior::Wrong => self.first_distractor(),
         };
         let targets = self.targets();
-        let others = targets.len().saturating_sub(1).max(1) as f64;
-        let of = |&index: &usize| match favoured {
-            None => 1.0,
-            Some(favoured) if index == favoured => FAVOURED,
-            Some(_) => (1.0 - FAVOURED) / others,
-        };
-        targets.iter().map(of).collect()
+        targets.iter().map(|&index| prior_of(index, favoured, targets.len())).collect()
     }
 
     fn first_distractor(&self) -> Option<usize> {
@@ -213,21 +237,9 @@ impl<'a> Course<'a> {
         let objects = self.cell.objects.of(recording.targets.len());
         self.cell.draw.first_distractor(recording, &recording.trial, self.reach.goal, objects)
     }
-
-    fn machine(&self) -> Result<Box<dyn Simulated>, EvaluationProblem> {
-        let (travel, place) = (travel(&self.reach.recording), self.reach.column);
-        Ok(match self.machine {
-            MachineKind::Ideal => Box::new(IdealMachine::standing(self.limits, travel, place)),
-            MachineKind::Simulated => Box::new(SimulatedMachine::standing(MachineParameters {
-                limits: self.limits,
-                start: place,
-                ..MachineParameters::paper(travel)
-            })?),
-        })
-    }
 }
 
-fn cells(plan: &Plan) -> Vec<Cell> {
+pub(super) fn cells(plan: &Plan) -> Vec<Cell> {
     let mut cells = Vec::new();
     for &rule in &plan.rules {
         for motion in plan.motions_of(rule) {
@@ -249,36 +261,85 @@ fn cells(plan: &Plan) -> Vec<Cell> {
     cells
 }
 
-/// Every cell with each of the rules' numbers for one person's reach, whose walk is prepared once; none where the
-/// recording has no distractor to name wrongly.
+/// Every cell with each of the rules' numbers: for each reach of the job, by cell. The walk of a trial is prepared
+/// once.
 fn with_each(
     plan: &Plan,
     intentions: &[IntentionParameters],
     cells: &[Cell],
-    reach: &Reach,
-) -> Result<Vec<Vec<Option<Judged>>>, EvaluationProblem> {
-    let walk = Walk::of_reach(&reach.recording, &pace(plan, &plan.conditions))?;
-    let judge = |intention, cell: &Cell| {
-        let course = Course { intention, ..Course::of(plan, *cell, reach, &walk) };
-        if cell.prior == Prior::Wrong && course.first_distractor().is_none() {
-            return Ok(None);
+    job: &Job<'_>,
+) -> Result<Vec<Vec<Vec<Option<Judged>>>>, EvaluationProblem> {
+    match job {
+        Job::Reach(reach) => {
+            let walk = Walk::of_reach(&reach.recording, &pace(plan, &plan.conditions))?;
+            let judge =
+                |intention, cell| judged(&Course { intention, ..Course::of(plan, cell, reach, &walk) });
+            let all = |intention| cells.iter().map(|&cell| judge(intention, cell)).collect::<Result<_, _>>();
+            intentions.iter().map(|intention| Ok(vec![all(intention)?])).collect()
         }
-        let outcome = course.replayed()?;
-        let judged =
-            if plan.blames { blame::judged(&course, outcome)? } else { Judged { outcome, cause: None } };
-        Ok(Some(judged))
-    };
-    let all_cells = |intention| cells.iter().map(|cell| judge(intention, cell)).collect();
-    intentions.iter().map(all_cells).collect()
+        Job::Session(session) => {
+            intentions.iter().map(|intention| visits_by_cell(plan, intention, cells, session)).collect()
+        }
+    }
+}
+
+/// The trial, with its cause if it is asked for; none where the recording has no distractor to name wrongly.
+fn judged(course: &Course<'_>) -> Result<Option<Judged>, EvaluationProblem> {
+    if course.cell.prior == Prior::Wrong && course.first_distractor().is_none() {
+        return Ok(None);
+    }
+    let outcome = course.replayed()?;
+    if course.plan.blames {
+        return blame::judged(course, outcome).map(Some);
+    }
+    Ok(Some(Judged { outcome, cause: None }))
+}
+
+/// How the engine decides in a cell.
+pub(super) fn conduct<'a>(plan: &Plan, cell: &Cell, intention: &'a IntentionParameters) -> Conduct<'a> {
+    Conduct {
+        rule: cell.rule.engine_rule(),
+        intention,
+        motion: cell.motion,
+        kept_from: cell.separation.kept_from(),
+        v_h_mps: plan.v_h_mps,
+    }
+}
+
+/// The prior of a target among so many shown.
+pub(super) fn prior_of(index: usize, favoured: Option<usize>, shown: usize) -> f64 {
+    let others = shown.saturating_sub(1).max(1) as f64;
+    match favoured {
+        None => 1.0,
+        Some(favoured) if index == favoured => FAVOURED,
+        Some(_) => (1.0 - FAVOURED) / others,
+    }
+}
+
+/// A machine that is homed and stands at `place`.
+pub(super) fn machine(
+    kind: MachineKind,
+    limits: Limits,
+    travel: Travel,
+    place: Floor,
+) -> Result<Box<dyn Simulated>, EvaluationProblem> {
+    Ok(match kind {
+        MachineKind::Ideal => Box::new(IdealMachine::standing(limits, travel, place)),
+        MachineKind::Simulated => Box::new(SimulatedMachine::standing(MachineParameters {
+            limits,
+            start: place,
+            ..MachineParameters::paper(travel)
+        })?),
+    })
 }
 
 pub(super) fn pace(plan: &Plan, conditions: &Conditions) -> Pace {
     Pace { period: plan.machine.period(), pose_hz: POSE_HZ, noise: conditions.noise, seed: SEED }
 }
 
-fn is_chosen(reach: &Reach, plan: &Plan) -> bool {
+fn is_chosen(recording: &Recording, plan: &Plan) -> bool {
     let asked = |list: &[String], word: &str| list.is_empty() || list.iter().any(|one| one == word);
-    asked(&plan.tasks, task(&reach.recording)) && asked(&plan.people, &reach.recording.user)
+    asked(&plan.tasks, task(recording)) && asked(&plan.people, &recording.user)
 }
 
 fn limits_in_words(plan: &Plan) -> BTreeMap<&'static str, f64> {
@@ -311,107 +372,7 @@ const POSE_HZ: f64 = 75.0;
 /// The paper's prior on the goal.
 const FAVOURED: f64 = 0.75;
 /// Of losses and noise.
-const SEED: u64 = 1;
+pub(super) const SEED: u64 = 1;
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use covr_engine::frames::Floor;
-    use covr_engine::intention::RuleName;
-    use std::fmt::Write;
-    use std::path::Path;
-
-    /// Two reaches of one person: to A in a file of two lines, then to B.
-    fn subjects(folder: &Path) -> Subjects {
-        let mut text = String::new();
-        for (trial, goal, x) in [("one", "A", 1.0), ("two", "B", 3.0)] {
-            let frames: Vec<String> = (0..=180)
-                .map(|i| {
-                    let t = f64::from(i) / 30.0;
-                    let s = ((t - 3.0) / 3.0).clamp(0.0, 1.0);
-                    let at = 2000.0 + (x - 2.0) * 1000.0 * s;
-                    let yaw = if x > 2.0 { 0 } else { 3142 };
-                    format!("[{},{},700,1600,{yaw},-200]", (t * 1000.0) as i64, at as i64)
-                })
-                .collect();
-            writeln!(
-                text,
-                r#"{{"dataset":"made","trial":"{trial}","user":"u","mode":"fixed","arena":{{"x":[0,4],"y":[0,4]}},"goal":"{goal}","targets":[{{"id":"A","x":0.4,"y":2,"z":1.1,"r":0.1}},{{"id":"B","x":3.6,"y":2,"z":1.1,"r":0.1}}],"events":{{"preview_end":2.0,"reach":6.0}},"cols":["t_ms","x_mm","y_mm","z_mm","yaw_mrad","pitch_mrad"],"frames":[{}]}}"#,
-                frames.join(",")
-            )
-            .unwrap();
-        }
-        let file = folder.join("made_reach.jsonl");
-        std::fs::write(&file, text).unwrap();
-        Subjects::read(&[file]).unwrap()
-    }
-
-    fn plan(threads: usize) -> Plan {
-        Plan {
-            rules: vec![RuleChoice::Rule(RuleName::PaperBest), RuleChoice::Told],
-            motions: vec![MotionName::Proxy],
-            objects: vec![Objects::Count(1), Objects::All],
-            priors: Prior::ALL.to_vec(),
-            machine: MachineKind::Ideal,
-            threads,
-            ..Plan::new(RuleName::PaperBest, MotionName::Proxy)
-        }
-    }
-
-    #[test]
-    fn the_table_is_the_same_for_any_number_of_threads() {
-        let folder = tempfile::tempdir().unwrap();
-        let subjects = subjects(folder.path());
-        let one = evaluate(&subjects, &plan(1), &|_, _| ()).unwrap();
-        assert_eq!(one, evaluate(&subjects, &plan(3), &|_, _| ()).unwrap());
-        assert!(one.pooled.iter().all(|row| row.objects == 0 && row.trials == 2), "{:?}", one.pooled);
-        // Prior by prior, two counts for the rule less the lone goal with a prior; two counts told.
-        assert_eq!(one.rows.len(), 4 + 2);
-        let told = one.rows.iter().find(|row| row.rule == "told" && row.objects == 0).unwrap();
-        assert_eq!((told.trials, told.violations, told.success), (2, 0, 1.0));
-        assert_eq!(told.top1["0.0"], 1.0);
-        assert!(one.rows.iter().filter(|row| row.default).all(|row| row.rule == "paper-best"));
-    }
-
-    #[test]
-    fn the_column_begins_at_the_goal_before() {
-        let folder = tempfile::tempdir().unwrap();
-        let subjects = subjects(folder.path());
-        assert_eq!(subjects.reaches[0].column, Floor::new(3.0, 3.0));
-        assert_eq!(subjects.reaches[1].column, Floor::new(0.4, 2.0));
-    }
-
-    #[test]
-    fn people_who_are_not_there_are_said_to_be_missing() {
-        let folder = tempfile::tempdir().unwrap();
-        let subjects = subjects(folder.path());
-        let nobody = Plan { people: vec!["x".into()], ..plan(1) };
-        assert!(matches!(evaluate(&subjects, &nobody, &|_, _| ()), Err(EvaluationProblem::Nothing)));
-    }
-
-    #[test]
-    fn every_failure_has_a_cause_and_every_cause_is_counted() {
-        let folder = tempfile::tempdir().unwrap();
-        let subjects = subjects(folder.path());
-        // So slow a machine is nowhere in time.
-        let conditions = Conditions { acceleration_share: 0.02, ..Conditions::AS_RECORDED };
-        let blamed = evaluate(&subjects, &Plan { blames: true, conditions, ..plan(1) }, &|_, _| ()).unwrap();
-        for row in &blamed.rows {
-            assert_eq!(row.blame.values().sum::<u64>(), (row.trials - row.successes) as u64, "{row:?}");
-        }
-        let told = blamed.rows.iter().find(|row| row.rule == "told").unwrap();
-        assert!(told.blame.contains_key("acceleration"), "{:?}", told.blame);
-    }
-
-    #[test]
-    fn without_the_separation_rule_its_breaches_are_counted_apart() {
-        let folder = tempfile::tempdir().unwrap();
-        let subjects = subjects(folder.path());
-        let separations = vec![SeparationChoice::On, SeparationChoice::Off];
-        let both = evaluate(&subjects, &Plan { separations, ..plan(1) }, &|_, _| ()).unwrap();
-        let of = |name: &str| both.rows.iter().filter(|row| row.separation == name).collect::<Vec<_>>();
-        assert_eq!(of("on").len(), of("off").len());
-        assert!(of("on").iter().all(|row| row.separation_breaches == 0));
-        assert!(both.rows.iter().all(|row| row.violations == 0));
-    }
-}
+mod tests;

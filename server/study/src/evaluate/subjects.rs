@@ -7,12 +7,14 @@ use covr_engine::machine::Travel;
 
 use super::row::LeftOut;
 use super::run::EvaluationProblem;
+use super::synthetic;
 use crate::trace::{HEAD_HEIGHT_M, Heights, Recording, Recordings, Target, trace_files};
 
 /// Recorded reaches and sessions, by file.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Subjects {
     pub(super) reaches: Vec<Reach>,
+    pub(super) sessions: Vec<Session>,
     pub(super) left_out: Vec<LeftOut>,
 }
 
@@ -26,10 +28,17 @@ pub(super) struct Reach {
     pub column: Floor,
 }
 
+/// One recorded session.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Session {
+    pub file: String,
+    pub recording: Recording,
+}
+
 impl Subjects {
     /// Read files and folders of traces. What has no goals is left out, and listed so.
     pub fn read(paths: &[PathBuf]) -> Result<Self, EvaluationProblem> {
-        let mut subjects = Self { reaches: Vec::new(), left_out: Vec::new() };
+        let mut subjects = Self::default();
         for path in paths {
             for file in trace_files(path)? {
                 let name = stem(&file);
@@ -38,20 +47,32 @@ impl Subjects {
                 }
             }
         }
-        if subjects.reaches.is_empty() { Err(EvaluationProblem::Nothing) } else { Ok(subjects) }
+        if subjects.reaches.is_empty() && subjects.sessions.is_empty() {
+            Err(EvaluationProblem::Nothing)
+        } else {
+            Ok(subjects)
+        }
     }
 
-    /// Reaches made elsewhere, in order.
-    pub fn of_recordings(file: &str, recordings: impl IntoIterator<Item = Recording>) -> Self {
-        let mut subjects = Self { reaches: Vec::new(), left_out: Vec::new() };
-        recordings.into_iter().for_each(|recording| subjects.take(file, recording));
+    /// So many reaches of the made-up visitor.
+    pub fn synthetic(reaches: usize) -> Self {
+        let mut subjects = Self::default();
+        synthetic::recordings(reaches).for_each(|recording| subjects.take("synthetic", recording));
         subjects
     }
 
     /// The first so many reaches alone.
     pub fn first(mut self, reaches: usize) -> Self {
         self.reaches.truncate(reaches);
+        self.sessions.clear();
         self
+    }
+
+    /// A trial whose name looks like this one.
+    pub(super) fn trial_like(&self, trial: &str) -> String {
+        let names = || self.reaches.iter().map(|reach| &reach.recording.trial);
+        let like = names().find(|name| name.contains(trial)).or_else(|| names().next());
+        like.cloned().unwrap_or_default()
     }
 
     fn take(&mut self, file: &str, recording: Recording) {
@@ -59,6 +80,9 @@ impl Subjects {
             Some(goal) => {
                 let column = column_start(&self.reaches, &recording);
                 self.reaches.push(Reach { file: file.to_owned(), recording, goal, column });
+            }
+            None if recording.visits.iter().any(|visit| visit.moments.reach.is_some()) => {
+                self.sessions.push(Session { file: file.to_owned(), recording });
             }
             None => self.leave_out(file, "no goal and no reach"),
         }
@@ -130,7 +154,7 @@ fn stem(file: &Path) -> String {
 }
 
 /// Inside the engine's own margin to the travel limits, m.
-const TRAVEL_MARGIN_M: f64 = 0.05;
+pub(super) const TRAVEL_MARGIN_M: f64 = 0.05;
 /// Targets of unknown height nearer to each other than this are one, m.
 const MERGED_WITHIN_M: f64 = 0.2;
 

@@ -20,6 +20,7 @@ use super::watch::ReachWatch;
 use super::{ClosedLoop, LinkProfile, Stepped, TrueHead};
 use crate::checker::Verdict;
 use crate::random::Random;
+use crate::trace::Recording;
 
 /// A recorded reach and what it is replayed with.
 #[derive(Debug, Clone, Copy)]
@@ -173,23 +174,32 @@ impl<'a> ReachTrial<'a> {
 
     /// The scene of the targets shown: spheres, the column without props.
     pub fn scene(&self) -> Result<Scene, Vec<SceneProblem>> {
-        let room_from_trace = self.walk.recording().room_from_trace();
-        let objects = self.targets.iter().enumerate().map(|(shown, &index)| {
-            let target = &self.walk.recording().targets[index];
-            ObjectSpec {
-                id: target.id.clone(),
-                position: room_from_trace.point(&target.position),
-                yaw_rad: 0.0,
-                shape: Shape::Sphere { radius_m: target.radius_m },
-                prop: None,
-                prior: self.priors.and_then(|priors| priors.get(shown)).copied().unwrap_or(1.0),
-                enabled: true,
-            }
-        });
-        let min = Floor::default();
-        let arena = Travel { min, max: min + self.walk.recording().size_m() };
-        Scene::build(SceneSpec::open(arena, objects.collect()))
+        scene_of(self.walk.recording(), self.targets, self.priors)
     }
+}
+
+/// Targets as spheres, and the column without props.
+pub(super) fn scene_of(
+    recording: &Recording,
+    targets: &[usize],
+    priors: Option<&[f64]>,
+) -> Result<Scene, Vec<SceneProblem>> {
+    let room_from_trace = recording.room_from_trace();
+    let objects = targets.iter().enumerate().map(|(shown, &index)| {
+        let target = &recording.targets[index];
+        ObjectSpec {
+            id: target.id.clone(),
+            position: room_from_trace.point(&target.position),
+            yaw_rad: 0.0,
+            shape: Shape::Sphere { radius_m: target.radius_m },
+            prop: None,
+            prior: priors.and_then(|priors| priors.get(shown)).copied().unwrap_or(1.0),
+            enabled: true,
+        }
+    });
+    let min = Floor::default();
+    let arena = Travel { min, max: min + recording.size_m() };
+    Scene::build(SceneSpec::open(arena, objects.collect()))
 }
 
 /// A walk played into a loop.
@@ -270,7 +280,7 @@ const ARMED_FOR: Span = Span::from_millis(2_000);
 mod tests {
     use super::super::walk::{Pace, TrackingNoise};
     use super::*;
-    use crate::trace::{Recording, Recordings};
+    use crate::trace::Recordings;
     use covr_engine::machine::Limits;
     use covr_gantry::ideal::IdealMachine;
     use std::fmt::Write;

@@ -1,0 +1,157 @@
+use super::*;
+use crate::evaluate::explain;
+use covr_engine::intention::RuleName;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Two reaches of one person: to A in a file of two lines, then to B.
+fn subjects(folder: &Path) -> Subjects {
+    let mut text = String::new();
+    for (trial, goal, x) in [("one", "A", 1.0), ("two", "B", 3.0)] {
+        let frames: Vec<String> = (0..=180)
+            .map(|i| {
+                let t = f64::from(i) / 30.0;
+                let s = ((t - 3.0) / 3.0).clamp(0.0, 1.0);
+                let at = 2000.0 + (x - 2.0) * 1000.0 * s;
+                let yaw = if x > 2.0 { 0 } else { 3142 };
+                format!("[{},{},700,1600,{yaw},-200]", (t * 1000.0) as i64, at as i64)
+            })
+            .collect();
+        writeln!(
+            text,
+            r#"{{"dataset":"made","trial":"{trial}","user":"u","mode":"fixed","arena":{{"x":[0,4],"y":[0,4]}},"goal":"{goal}","targets":[{{"id":"A","x":0.4,"y":2,"z":1.1,"r":0.1}},{{"id":"B","x":3.6,"y":2,"z":1.1,"r":0.1}}],"events":{{"preview_end":2.0,"reach":6.0}},"cols":["t_ms","x_mm","y_mm","z_mm","yaw_mrad","pitch_mrad"],"frames":[{}]}}"#,
+            frames.join(",")
+        )
+        .unwrap();
+    }
+    let file = folder.join("made_reach.jsonl");
+    std::fs::write(&file, text).unwrap();
+    Subjects::read(&[file]).unwrap()
+}
+
+fn plan(threads: usize) -> Plan {
+    Plan {
+        rules: vec![RuleChoice::Rule(RuleName::PaperBest), RuleChoice::Told],
+        motions: vec![MotionName::Proxy],
+        objects: vec![Objects::Count(1), Objects::All],
+        priors: Prior::ALL.to_vec(),
+        machine: MachineKind::Ideal,
+        threads,
+        ..Plan::new(RuleName::PaperBest, MotionName::Proxy)
+    }
+}
+
+#[test]
+fn the_table_is_the_same_for_any_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let subjects = subjects(folder.path());
+    let one = evaluate(&subjects, &plan(1), &|_, _| ()).unwrap();
+    assert_eq!(one, evaluate(&subjects, &plan(3), &|_, _| ()).unwrap());
+    assert!(one.pooled.iter().all(|row| row.objects == 0 && row.trials == 2), "{:?}", one.pooled);
+    // Prior by prior, two counts for the rule less the lone goal with a prior; two counts told.
+    assert_eq!(one.rows.len(), 4 + 2);
+    let told = one.rows.iter().find(|row| row.rule == "told" && row.objects == 0).unwrap();
+    assert_eq!((told.trials, told.violations, told.success), (2, 0, 1.0));
+    assert_eq!(told.top1["0.0"], 1.0);
+    assert!(one.rows.iter().filter(|row| row.default).all(|row| row.rule == "paper-best"));
+}
+
+#[test]
+fn the_column_begins_at_the_goal_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let subjects = subjects(folder.path());
+    assert_eq!(subjects.reaches[0].column, Floor::new(3.0, 3.0));
+    assert_eq!(subjects.reaches[1].column, Floor::new(0.4, 2.0));
+}
+
+#[test]
+fn people_who_are_not_there_are_said_to_be_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let subjects = subjects(folder.path());
+    let nobody = Plan { people: vec!["x".into()], ..plan(1) };
+    assert!(matches!(evaluate(&subjects, &nobody, &|_, _| ()), Err(EvaluationProblem::Nothing)));
+}
+
+#[test]
+fn every_failure_has_a_cause_and_every_cause_is_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let subjects = subjects(folder.path());
+    // So slow a machine is nowhere in time.
+    let conditions = Conditions { acceleration_share: 0.02, ..Conditions::AS_RECORDED };
+    let blamed = evaluate(&subjects, &Plan { blames: true, conditions, ..plan(1) }, &|_, _| ()).unwrap();
+    for row in &blamed.rows {
+        assert_eq!(row.blame.values().sum::<u64>(), (row.trials - row.successes) as u64, "{row:?}");
+    }
+    let told = blamed.rows.iter().find(|row| row.rule == "told").unwrap();
+    assert!(told.blame.contains_key("acceleration"), "{:?}", told.blame);
+}
+
+#[test]
+fn without_the_separation_rule_its_breaches_are_counted_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let subjects = subjects(folder.path());
+    let separations = vec![SeparationChoice::On, SeparationChoice::Off];
+    let both = evaluate(&subjects, &Plan { separations, ..plan(1) }, &|_, _| ()).unwrap();
+    let of = |name: &str| both.rows.iter().filter(|row| row.separation == name).collect::<Vec<_>>();
+    assert_eq!(of("on").len(), of("off").len());
+    assert!(of("on").iter().all(|row| row.separation_breaches == 0));
+    assert!(both.rows.iter().all(|row| row.violations == 0));
+}
+
+/// One person who goes to B and then to A in one recording, unseen for a while on the way back.
+fn session(folder: &Path) -> Subjects {
+    let frames: Vec<String> = (0..=480)
+        .filter(|i| !(205..240).contains(i))
+        .map(|i| {
+            let t = f64::from(i) / 30.0;
+            let to_b = ((t - 3.0) / 3.0).clamp(0.0, 1.0);
+            let to_a = ((t - 7.0) / 6.0).clamp(0.0, 1.0);
+            let x = 2000.0 + 1000.0 * to_b - 2000.0 * to_a;
+            let yaw = if t < 6.5 { 0 } else { 3142 };
+            format!("[{},{},700,1600,{yaw},-200]", (t * 1000.0) as i64, x as i64)
+        })
+        .collect();
+    let text = format!(
+        r#"{{"dataset":"made","trial":"u/session","user":"u","mode":"fixed","arena":{{"x":[0,4],"y":[0,4]}},"targets":[{{"id":"A","x":0.4,"y":2,"z":1.1,"r":0.1}},{{"id":"B","x":3.6,"y":2,"z":1.1,"r":0.1}}],"visits":[{{"goal":"B","valid":true,"preview_start":1.0,"reach":6.0}},{{"goal":"A","valid":true,"preview_start":9.0,"reach":15.0}},{{"goal":"A","valid":false,"preview_start":15.2,"reach":16.0}}],"cols":["t_ms","x_mm","y_mm","z_mm","yaw_mrad","pitch_mrad"],"frames":[{}]}}"#,
+        frames.join(",")
+    );
+    let file = folder.join("made_sessions.jsonl");
+    std::fs::write(&file, text).unwrap();
+    Subjects::read(&[file]).unwrap()
+}
+
+#[test]
+fn a_session_runs_on_from_visit_to_visit_and_its_gap_is_lost_tracking() {
+    let folder = tempfile::tempdir().unwrap();
+    let subjects = session(folder.path());
+    let one = evaluate(&subjects, &plan(1), &|_, _| ()).unwrap();
+    assert_eq!(one, evaluate(&subjects, &plan(2), &|_, _| ()).unwrap());
+    let told = one.rows.iter().find(|row| row.rule == "told" && row.objects == 0).unwrap();
+    // The third visit is not valid. More than half a second without poses is a stop, and the column goes on after it.
+    assert_eq!((told.trials, told.successes, told.stops, told.violations), (2, 2, 1, 0), "{told:?}");
+}
+
+#[test]
+fn a_late_trial_is_explained_in_words_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let subjects = subjects(folder.path());
+    let conditions = Conditions { acceleration_share: 0.02, ..Conditions::AS_RECORDED };
+    let explanation = explain(&subjects, &Plan { conditions, ..plan(1) }, "two").unwrap();
+    let words = &explanation.words;
+    for said in ["Trial two: person u, task fixed, goal B", "late.", "Cause: ", "0 violations"] {
+        assert!(words.contains(said), "{said:?} is not in {words}");
+    }
+    let svg = &explanation.svg;
+    for drawn in ["class=\"person\"", "class=\"column\"", "class=\"late\"", "-1 s</text>", "</svg>"] {
+        assert!(svg.contains(drawn), "{drawn:?} is not in {svg}");
+    }
+    let unknown = explain(&subjects, &plan(1), "three").unwrap_err().to_string();
+    assert!(unknown.contains("`three`") && unknown.contains("`one`"), "{unknown}");
+}
+
+#[test]
+fn the_made_up_visitor_stands_in_where_there_are_no_recordings() {
+    let made_up = Plan { objects: vec![Objects::Count(2)], priors: vec![Prior::None], ..plan(2) };
+    let one = evaluate(&Subjects::synthetic(10), &made_up, &|_, _| ()).unwrap();
+    assert!(one.rows.iter().all(|row| row.trials == 10 && row.file == "synthetic" && row.violations == 0));
+}
