@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::config::LogFormat;
 use crate::evaluate::Evaluate;
+use crate::explain::Explain;
 
 /// CoVR: the column is there before your hand is.
 #[derive(Debug, Parser)]
@@ -31,6 +32,8 @@ pub enum Command {
     Visitor(Visitor),
     /// Replay recorded people on virtual time and say how often the column was there before the hand.
     Evaluate(Box<Evaluate>),
+    /// Say in words what happened in one recorded reach, and draw it.
+    Explain(Box<Explain>),
     /// Ask a running server whether it is ready; exit code 2 if it is not.
     Health(Health),
     /// Print every configuration key with its default and its meaning.

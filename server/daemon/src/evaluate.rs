@@ -21,8 +21,11 @@ use crate::config::Config;
 #[derive(Debug, Clone, Args)]
 pub struct Evaluate {
     /// Recordings (.jsonl, .jsonl.gz), or folders of them.
-    #[arg(required = true)]
+    #[arg(required_unless_present = "synthetic")]
     pub paths: Vec<PathBuf>,
+    /// So many reaches of the made-up visitor instead, where there are no recordings. They are no evidence about people.
+    #[arg(long, conflicts_with = "paths", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub synthetic: Option<u32>,
     /// Rules by name; every rule when not given.
     #[arg(long, value_delimiter = ',', value_parser = RuleChoice::parse)]
     pub rules: Vec<RuleChoice>,
@@ -48,7 +51,7 @@ pub struct Evaluate {
     #[arg(long, value_delimiter = ',', default_value = "hash", value_parser = Draw::parse)]
     pub draw: Vec<Draw>,
     /// v_h of the separation rule, m/s.
-    #[arg(long, default_value_t = 1.6, value_parser = |text: &str| within("v-h", text, 1.6, 3.0))]
+    #[arg(long, default_value_t = 1.6, value_parser = walking_speed)]
     pub v_h: f64,
     /// The machine: simulated, ideal.
     #[arg(long, default_value = "simulated", value_parser = MachineKind::parse)]
@@ -84,7 +87,12 @@ pub struct Evaluate {
 
 /// The table: what goes to standard output. Files are written on the way.
 pub fn run(options: &Evaluate) -> anyhow::Result<String> {
-    let subjects = Subjects::read(&options.paths)?;
+    let subjects = match options.synthetic {
+        Some(reaches) => Subjects::synthetic(reaches as usize),
+        None => Subjects::read(&options.paths).context(
+            "expected recordings (.jsonl, .jsonl.gz) or a folder of them; --synthetic 100 needs none",
+        )?,
+    };
     let plan = plan(options);
     let bar = bar();
     let started = Instant::now();
@@ -144,6 +152,11 @@ fn bar() -> ProgressBar {
     ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
+/// v_h on the command line, m/s.
+pub(crate) fn walking_speed(text: &str) -> Result<f64, PlanProblem> {
+    within("v-h", text, 1.6, 3.0)
+}
+
 fn within(what: &'static str, text: &str, least: f64, most: f64) -> Result<f64, PlanProblem> {
     let expected = format!("a number from {least} to {most}");
     let problem = || PlanProblem { what, found: text.into(), expected };
@@ -151,4 +164,4 @@ fn within(what: &'static str, text: &str, least: f64, most: f64) -> Result<f64, 
 }
 
 /// How the server moves the column when nothing is configured.
-const DEFAULT_MOTION: MotionName = MotionName::Proxy;
+pub(crate) const DEFAULT_MOTION: MotionName = MotionName::Proxy;
