@@ -8,7 +8,7 @@ use covr_engine::machine::Travel;
 use super::row::LeftOut;
 use super::run::EvaluationProblem;
 use super::synthetic;
-use crate::trace::{HEAD_HEIGHT_M, Heights, Recording, Recordings, Target, trace_files};
+use crate::trace::{HEAD_HEIGHT_M, Heights, Recording, Recordings, Target, Visit, trace_files};
 
 /// Recorded reaches and sessions, by file.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -43,7 +43,7 @@ impl Subjects {
             for file in trace_files(path)? {
                 let name = stem(&file);
                 for recording in Recordings::open(&file)? {
-                    subjects.take(&name, with_horizontal_angles(recording?));
+                    subjects.take(&name, with_targets_inside(with_horizontal_angles(recording?)));
                 }
             }
         }
@@ -83,6 +83,9 @@ impl Subjects {
             }
             None if recording.visits.iter().any(|visit| visit.moments.reach.is_some()) => {
                 self.sessions.push(Session { file: file.to_owned(), recording });
+            }
+            None if recording.events.reach.is_some() && !recording.targets.is_empty() => {
+                self.leave_out(file, "the goal lies outside the arena, or there is none");
             }
             None => self.leave_out(file, "no goal and no reach"),
         }
@@ -134,6 +137,32 @@ fn with_horizontal_angles(mut recording: Recording) -> Recording {
     recording
 }
 
+/// A target outside the arena is where no column can stand: it is no object, and nobody is served there.
+fn with_targets_inside(mut recording: Recording) -> Recording {
+    let Some(arena) = recording.arena else { return recording };
+    let inside = |target: &Target| {
+        let (x, y) = (target.position.x(), target.position.y());
+        (arena.x_m[0]..=arena.x_m[1]).contains(&x) && (arena.y_m[0]..=arena.y_m[1]).contains(&y)
+    };
+    let mut kept: Vec<Target> = Vec::new();
+    let now_at: Vec<Option<usize>> = std::mem::take(&mut recording.targets)
+        .into_iter()
+        .map(|target| {
+            inside(&target).then(|| {
+                kept.push(target);
+                kept.len() - 1
+            })
+        })
+        .collect();
+    recording.targets = kept;
+    recording.goal = recording.goal.and_then(|goal| now_at[goal]);
+    recording.visits = std::mem::take(&mut recording.visits)
+        .into_iter()
+        .filter_map(|visit| Some(Visit { goal: now_at[visit.goal]?, ..visit }))
+        .collect();
+    recording
+}
+
 /// The goal of the trial before of this person and task; for the first the arena's centre and a metre off.
 fn column_start(before: &[Reach], recording: &Recording) -> Floor {
     let travel = travel(recording);
@@ -178,5 +207,21 @@ mod tests {
         let head = room_from_trace.pose(&recording.resampled(75.0).next().unwrap().pose);
         assert_eq!(head.position.z(), room_from_trace.point(&recording.targets[1].position).z());
         assert_eq!(head.view().z, 0.0);
+    }
+
+    #[test]
+    fn a_goal_outside_the_arena_is_left_out_and_said() {
+        let line = |trial: &str, goal: &str| {
+            format!(
+                r#"{{"dataset":"made","trial":"{trial}","user":"u","arena":{{"x":[0,4],"y":[0,4]}},"goal":"{goal}","targets":[{{"id":"out","x":1,"y":4.2,"z":1,"r":0.1}},{{"id":"in","x":3,"y":1,"z":1,"r":0.1}}],"events":{{"reach":0.03}},"cols":["t_ms","x_mm","y_mm"],"frames":[[0,2000,2000],[33,2000,2000]]}}"#
+            )
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("made.jsonl");
+        std::fs::write(&file, format!("{}\n{}\n", line("a", "out"), line("b", "in"))).unwrap();
+        let subjects = Subjects::read(&[file]).unwrap();
+        let [reach] = &subjects.reaches[..] else { panic!("{subjects:?}") };
+        assert_eq!((reach.recording.trial.as_str(), reach.goal, reach.recording.targets.len()), ("b", 0, 1));
+        assert_eq!(subjects.left_out[0].recordings, 1);
     }
 }
