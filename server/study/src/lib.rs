@@ -2,6 +2,7 @@
 //!
 //! Pure but for the reading of trace files: no clock, no thread, no random source but [`random::Random`]'s seed.
 
+pub mod bound;
 pub mod checker;
 pub mod evaluate;
 pub mod random;
