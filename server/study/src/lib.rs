@@ -5,6 +5,7 @@
 pub mod bound;
 pub mod checker;
 pub mod evaluate;
+pub mod fit;
 pub mod random;
 pub mod replay;
 pub mod trace;

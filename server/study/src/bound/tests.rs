@@ -3,11 +3,9 @@ use std::fmt::Write;
 use std::io::Cursor;
 use std::path::Path;
 
-use covr_engine::intention::RuleName;
 use proptest::prelude::*;
 
 use super::*;
-use crate::replay::{LinkProfile, ReachTrial};
 use crate::trace::Recordings;
 
 /// A person who stands at (2, 0.5) m for a second, then walks to 0.6 m before the ball at (2, 3.4) m.
@@ -29,18 +27,8 @@ fn walk(walks_for_secs: f64) -> Recording {
 }
 
 fn asked(recording: &Recording, start: Floor, v_h_mps: f64, limits: Limits) -> Bound {
-    let travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
-    let trial = ReachTrial {
-        recording,
-        targets: &[0],
-        priors: None,
-        rule: RuleName::Paper,
-        v_h_mps,
-        pose_hz: 75.0,
-        link: LinkProfile::PERFECT,
-        seed: 1,
-    };
-    let scene = trial.scene().unwrap();
+    let travel = recording.travel();
+    let scene = recording.scene(&[0]).unwrap();
     let (begins, reach) = (recording.frames[0].at, recording.events.reach.unwrap());
     let place = scene.objects()[0].column_place();
     bound(&Question { recording, scene: &scene, place, start, begins, reach, limits, travel, v_h_mps })
