@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::config::LogFormat;
 use crate::evaluate::Evaluate;
+use crate::fit::Fit;
 
 /// CoVR: the column is there before your hand is.
 #[derive(Debug, Parser)]
@@ -31,6 +32,8 @@ pub enum Command {
     Visitor(Visitor),
     /// Replay recorded people on virtual time and say how often the column was there before the hand.
     Evaluate(Evaluate),
+    /// Fit the parameters of an intention rule to recorded people, and judge them on people left out.
+    Fit(Fit),
     /// Ask a running server whether it is ready; exit code 2 if it is not.
     Health(Health),
     /// Print every configuration key with its default and its meaning.

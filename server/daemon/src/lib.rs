@@ -12,6 +12,7 @@ pub mod clock;
 pub mod config;
 pub mod control;
 pub mod evaluate;
+pub mod fit;
 pub mod http;
 pub mod live;
 pub mod logs;
