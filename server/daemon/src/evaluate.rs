@@ -11,6 +11,7 @@ use covr_study::evaluate::{
     Draw, Evaluation, MachineKind, Objects, Plan, PlanProblem, Prior, RuleChoice, Subjects, csv, evaluate,
     json, terminal,
 };
+use covr_study::report::html;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::config::Config;
@@ -54,6 +55,9 @@ pub struct Evaluate {
     /// Write the table as CSV to this file; - for standard output.
     #[arg(long)]
     pub csv: Option<PathBuf>,
+    /// Write the table with its plots as one HTML page to this file; - for standard output.
+    #[arg(long)]
+    pub html: Option<PathBuf>,
 }
 
 /// The table: what goes to standard output. Files are written on the way.
@@ -69,7 +73,12 @@ pub fn run(options: &Evaluate) -> anyhow::Result<String> {
     bar.finish_and_clear();
     evaluation.wall_secs = started.elapsed().as_secs_f64();
     let mut out = String::new();
-    for (file, text) in [(&options.json, json(&evaluation)?), (&options.csv, csv(&evaluation)?)] {
+    let written = [
+        (&options.json, json(&evaluation)?),
+        (&options.csv, csv(&evaluation)?),
+        (&options.html, html(&evaluation)),
+    ];
+    for (file, text) in written {
         match file.as_deref() {
             Some(file) if file == Path::new("-") => out += &(text + "\n"),
             Some(file) => std::fs::write(file, text).with_context(|| file.display().to_string())?,

@@ -8,6 +8,7 @@ pub mod evaluate;
 pub mod fit;
 pub mod random;
 pub mod replay;
+pub mod report;
 pub mod trace;
 pub mod visitor;
 pub mod workload;
