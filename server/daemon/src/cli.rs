@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand};
 use crate::config::LogFormat;
 use crate::evaluate::Evaluate;
 use crate::explain::Explain;
+use crate::fit::Fit;
 
 /// CoVR: the column is there before your hand is.
 #[derive(Debug, Parser)]
@@ -34,6 +35,8 @@ pub enum Command {
     Evaluate(Box<Evaluate>),
     /// Say in words what happened in one recorded reach, and draw it.
     Explain(Box<Explain>),
+    /// Fit the parameters of an intention rule to recorded people, and judge them on people left out.
+    Fit(Fit),
     /// Ask a running server whether it is ready; exit code 2 if it is not.
     Health(Health),
     /// Print every configuration key with its default and its meaning.

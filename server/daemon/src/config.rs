@@ -3,6 +3,7 @@
 //! Values are right once loaded: each key knows what it accepts, and a refusal names the key, what was
 //! found and what was expected. `COVR_SECTION__KEY` in the environment overrides the file.
 
+mod intention;
 mod keys;
 mod load;
 mod origins;
@@ -15,6 +16,7 @@ use covr_engine::intention::RuleName;
 use covr_engine::machine::{AxisLimits, Limits, Travel};
 use covr_wire::dashboard::LinkThresholds;
 
+pub use intention::ParametersRefused;
 pub use keys::{Key, all as keys};
 pub use load::{ConfigError, load, load_text, reference};
 pub use origins::{Loaded, Origins};
@@ -99,6 +101,8 @@ pub enum MachineKind {
 pub struct People {
     /// The intention rule.
     pub intention_rule: RuleName,
+    /// A file of parameters for it, as `covr fit` writes them; none: those by default.
+    pub intention_parameters: Option<PathBuf>,
     /// v_h of the separation rule, m/s.
     pub v_h_mps: f64,
 }
@@ -184,7 +188,7 @@ impl Default for Config {
                 x: AxisLimits::PAPER,
                 y: AxisLimits::PAPER,
             },
-            people: People { intention_rule: RuleName::PaperBest, v_h_mps: 1.6 },
+            people: People { intention_rule: RuleName::PaperBest, intention_parameters: None, v_h_mps: 1.6 },
             recording: Recording { enabled: true, keep_days: 365, keep_megabytes: 20_000 },
             clients: Clients {
                 most: 8,

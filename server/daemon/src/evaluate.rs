@@ -13,6 +13,7 @@ use covr_study::evaluate::{
     SeparationChoice, Subjects, csv, evaluate, json, motion, terminal,
 };
 use covr_study::replay::TrackingNoise;
+use covr_study::report::html;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::config::Config;
@@ -83,6 +84,9 @@ pub struct Evaluate {
     /// Write the table as CSV to this file; - for standard output.
     #[arg(long)]
     pub csv: Option<PathBuf>,
+    /// Write the table with its plots as one HTML page to this file; - for standard output.
+    #[arg(long)]
+    pub html: Option<PathBuf>,
 }
 
 /// The table: what goes to standard output. Files are written on the way.
@@ -103,7 +107,12 @@ pub fn run(options: &Evaluate) -> anyhow::Result<String> {
     bar.finish_and_clear();
     evaluation.wall_secs = started.elapsed().as_secs_f64();
     let mut out = String::new();
-    for (file, text) in [(&options.json, json(&evaluation)?), (&options.csv, csv(&evaluation)?)] {
+    let written = [
+        (&options.json, json(&evaluation)?),
+        (&options.csv, csv(&evaluation)?),
+        (&options.html, html(&evaluation)),
+    ];
+    for (file, text) in written {
         match file.as_deref() {
             Some(file) if file == Path::new("-") => out += &(text + "\n"),
             Some(file) => std::fs::write(file, text).with_context(|| file.display().to_string())?,

@@ -13,6 +13,7 @@ pub mod config;
 pub mod control;
 pub mod evaluate;
 pub mod explain;
+pub mod fit;
 pub mod http;
 pub mod live;
 pub mod logs;

@@ -9,7 +9,7 @@ use clap::Parser;
 use covr_server::cli::{Check, Cli, Command, Health, Serve, Visitor};
 use covr_server::config::{self, Config};
 use covr_server::serve::{Reach, Server, stop_at_signal, told_by_signal};
-use covr_server::{evaluate, explain, logs, visitor};
+use covr_server::{evaluate, explain, fit, logs, visitor};
 use covr_wire::scene::parse_scene;
 
 fn main() -> ExitCode {
@@ -20,6 +20,7 @@ fn main() -> ExitCode {
         Command::Visitor(options) => visit(options),
         Command::Evaluate(options) => evaluate::run(&options).and_then(|table| print(&table)),
         Command::Explain(options) => explain::run(&options).and_then(|words| print(&words)),
+        Command::Fit(options) => fit::run(&options).and_then(|report| print(&report)),
         Command::Health(options) => health(&options),
         Command::Config => print(&config::reference(&Config::default())),
     };

@@ -8,7 +8,6 @@ use std::time::Duration;
 use anyhow::{Context, bail, ensure};
 use axum::serve::ListenerExt;
 use covr_engine::frames::Floor;
-use covr_engine::intention::IntentionParameters;
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::motion::MotionName;
 use covr_engine::safety::separation::KeptFrom;
@@ -69,6 +68,7 @@ impl Server {
     ) -> anyhow::Result<Self> {
         let Loaded { config, origins } = config.into();
         check_reach(&config, reach)?;
+        let intention = config.people.intention()?;
         let prometheus = meters::install()?;
         let clock = Clock::started_now();
         let path = &config.server.database;
@@ -104,7 +104,7 @@ impl Server {
             travel: config.machine.travel(),
             period: Span::from_secs(period.as_secs_f64()),
             intention_rule: config.people.intention_rule,
-            intention: IntentionParameters::default(),
+            intention,
             motion: MotionName::Proxy,
             kept_from: KeptFrom::Everybody,
             v_h_mps: config.people.v_h_mps,

@@ -2,10 +2,13 @@
 //!
 //! Pure but for the reading of trace files: no clock, no thread, no random source but [`random::Random`]'s seed.
 
+pub mod bound;
 pub mod checker;
 pub mod evaluate;
+pub mod fit;
 pub mod random;
 pub mod replay;
+pub mod report;
 pub mod trace;
 pub mod visitor;
 pub mod workload;

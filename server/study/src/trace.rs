@@ -5,6 +5,7 @@
 
 mod parse;
 mod resample;
+mod scene;
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};

@@ -35,6 +35,7 @@ enum Place {
     Switch(fn(&mut Config) -> &mut bool),
     Text(fn(&mut Config) -> &mut String),
     Path(fn(&mut Config) -> &mut PathBuf),
+    PathOrNone(fn(&mut Config) -> &mut Option<PathBuf>),
     Address(fn(&mut Config) -> &mut SocketAddr),
     Origins(fn(&mut Config) -> &mut Vec<String>),
     Rectangle(fn(&mut Config) -> &mut [f64; 4]),
@@ -150,6 +151,11 @@ pub fn all() -> Vec<Key> {
             Place::Rule(|c| &mut c.people.intention_rule),
         ),
         Key::new(
+            "people.intention_parameters",
+            "A file of parameters for the intention rule, as covr fit writes it; empty for those by default.",
+            Place::PathOrNone(|c| &mut c.people.intention_parameters),
+        ),
+        Key::new(
             "people.v_h_mps",
             "v_h of the separation rule: how fast a person is assumed to come nearer, m/s (ISO 13855: 1.6).",
             Place::Number(1.6..=3.0, |c| &mut c.people.v_h_mps),
@@ -238,6 +244,7 @@ impl Key {
             Place::Switch(_) => "true or false".into(),
             Place::Text(_) => "a text that is not empty".into(),
             Place::Path(_) => "a path that is not empty".into(),
+            Place::PathOrNone(_) => "a path, or \"\" for none".into(),
             Place::Address(_) => "an address and a port such as \"127.0.0.1:7878\"".into(),
             Place::Origins(_) => {
                 "a list of texts such as \"https://lab.example:8443\", \"file://\" or \"null\"".into()
@@ -271,6 +278,10 @@ impl Key {
             Place::Switch(place) => Value::Boolean(*place(&mut config)),
             Place::Text(place) => Value::String(place(&mut config).clone()),
             Place::Path(place) => Value::String(place(&mut config).display().to_string()),
+            Place::PathOrNone(place) => {
+                let path = place(&mut config).as_ref().map(|path| path.display().to_string());
+                Value::String(path.unwrap_or_default())
+            }
             Place::Address(place) => Value::String(place(&mut config).to_string()),
             Place::Origins(place) => {
                 Value::Array(place(&mut config).iter().cloned().map(Value::String).collect())
@@ -307,6 +318,10 @@ impl Key {
             Place::Switch(place) => *place(config) = value.as_bool()?,
             Place::Text(place) => *place(config) = text(value)?.into(),
             Place::Path(place) => *place(config) = text(value)?.into(),
+            Place::PathOrNone(place) => {
+                *place(config) =
+                    Some(value.as_str()?.trim()).filter(|path| !path.is_empty()).map(PathBuf::from);
+            }
             Place::Address(place) => *place(config) = value.as_str()?.parse().ok()?,
             Place::Origins(place) => {
                 *place(config) = value.as_array()?.iter().map(origin).collect::<Option<_>>()?;

@@ -1,0 +1,238 @@
+//! `covr fit`: the parameters of an intention rule that suit recorded people, judged on people left out.
+
+use std::fmt::Write;
+use std::io::IsTerminal;
+use std::path::PathBuf;
+
+use anyhow::{Context, bail};
+use clap::Args;
+use covr_engine::intention::{IntentionParameters, RuleName};
+use covr_study::evaluate::Objects;
+use covr_study::fit::{
+    BeliefLoss, Fit as Found, Fitted, FittedOn, Objective, PARAMETERS, Parameter, ParameterFile, Tally, fit,
+    of_rule, sweep,
+};
+use covr_study::trace::{Recording, Recordings, trace_files};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::clock;
+
+/// Fit the parameters of an intention rule to recorded people, and judge them on people left out.
+#[derive(Debug, Clone, Args)]
+pub struct Fit {
+    /// Recordings (.jsonl, .jsonl.gz), or folders of them.
+    #[arg(required = true)]
+    pub paths: Vec<PathBuf>,
+    /// The rule.
+    #[arg(long, value_parser = rule)]
+    pub rule: RuleName,
+    /// Numbers of objects shown: 1, 2, ..., all.
+    #[arg(long, value_delimiter = ',', default_value = "1,2,3,4,5,all", value_parser = Objects::parse)]
+    pub objects: Vec<Objects>,
+    /// Tasks by name, such as fixed; every one when not given.
+    #[arg(long, value_delimiter = ',')]
+    pub task: Vec<String>,
+    /// People by name; every one when not given.
+    #[arg(long, value_delimiter = ',')]
+    pub people: Vec<String>,
+    /// Groups of people that are left out in turn; 0 for none.
+    #[arg(long, default_value_t = 5)]
+    pub folds: usize,
+    /// Instead of a search, so many values of one parameter from end to end, such as paper.distance_share=13.
+    #[arg(long, value_parser = swept)]
+    pub sweep: Option<(&'static Parameter, usize)>,
+    /// Write the parameters to this file.
+    #[arg(long, conflicts_with = "sweep")]
+    pub out: Option<PathBuf>,
+    /// Threads; 0 for as many as there are cores. The result does not depend on it.
+    #[arg(long, default_value_t = 0)]
+    pub threads: usize,
+}
+
+/// The report: what goes to standard output. The file is written on the way.
+pub fn run(options: &Fit) -> anyhow::Result<String> {
+    let (recordings, files) = read(options)?;
+    let objective = BeliefLoss::new(&recordings, options.rule, &options.objects, options.threads)?;
+    let bar = bar();
+    let told = || bar.inc(1);
+    if let Some((parameter, values)) = options.sweep {
+        let swept = sweep(&objective, &IntentionParameters::default(), parameter, values, &told);
+        bar.finish_and_clear();
+        let mut text = format!("{:>12}  {}\n", parameter.name, objective.name());
+        for (value, loss) in swept {
+            let total = loss.values().fold(Tally::default(), |sum, one| sum.with(*one));
+            let _ = writeln!(text, "{value:>12.4}  {:.4}", total.mean());
+        }
+        return Ok(text);
+    }
+    if of_rule(options.rule).next().is_none() {
+        let fittable: Vec<&str> = RuleName::ALL
+            .into_iter()
+            .filter(|rule| of_rule(*rule).next().is_some())
+            .map(RuleName::name)
+            .collect();
+        bail!(
+            "--rule: found `{}`, which has no parameters, expected one of {}",
+            options.rule.name(),
+            fittable.join(", ")
+        );
+    }
+    let found = fit(&objective, options.rule, options.folds, &told);
+    bar.finish_and_clear();
+    if let Some(out) = &options.out {
+        let fitted = Some(fitted(&found, &objective, &recordings, files));
+        let file = ParameterFile { rule: options.rule, parameters: found.parameters.clone(), fitted };
+        std::fs::write(out, file.text()?).with_context(|| out.display().to_string())?;
+    }
+    Ok(report(options.rule, &objective, &found))
+}
+
+fn read(options: &Fit) -> anyhow::Result<(Vec<Recording>, Vec<FittedOn>)> {
+    let asked = |list: &[String], word: &str| list.is_empty() || list.iter().any(|one| one == word);
+    let (mut recordings, mut files) = (Vec::new(), Vec::new());
+    for path in &options.paths {
+        for file in trace_files(path)? {
+            let before = recordings.len();
+            for recording in Recordings::open(&file)? {
+                let recording = recording?;
+                let has_reach = recording.goal.is_some() && recording.events.reach.is_some();
+                let task = recording.mode.as_deref().unwrap_or("none");
+                if has_reach && asked(&options.task, task) && asked(&options.people, &recording.user) {
+                    recordings.push(recording);
+                }
+            }
+            if recordings.len() > before {
+                files.push(FittedOn::of(&file).with_context(|| file.display().to_string())?);
+            }
+        }
+    }
+    if recordings.is_empty() {
+        bail!("found no recording with a goal and a reach among those that were asked for");
+    }
+    Ok((recordings, files))
+}
+
+fn fitted(
+    found: &Found,
+    objective: &dyn Objective,
+    recordings: &[Recording],
+    files: Vec<FittedOn>,
+) -> Fitted {
+    let mut people: Vec<String> = recordings.iter().map(|recording| recording.user.clone()).collect();
+    people.sort();
+    people.dedup();
+    Fitted {
+        at: clock::wall_now(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        objective: objective.name().into(),
+        before: found.before,
+        in_sample: found.in_sample,
+        left_out: found.left_out,
+        folds: found.folds.len(),
+        people,
+        files,
+    }
+}
+
+fn report(rule: RuleName, objective: &dyn Objective, found: &Found) -> String {
+    let mut text = format!("{}, {} by default {:.4}\n", rule.name(), objective.name(), found.before);
+    let _ = writeln!(text, "fitted to everybody         {:.4}", found.in_sample);
+    match found.left_out {
+        Some(left_out) => _ = writeln!(text, "on people left out          {left_out:.4}"),
+        None => text += "on people left out          nobody was left out\n",
+    }
+    for fold in &found.folds {
+        let who = fold.left_out.join(", ");
+        let _ = writeln!(
+            text,
+            "  without {who}: in sample {:.4}, left out {:.4}",
+            fold.in_sample, fold.on_left_out
+        );
+    }
+    for parameter in of_rule(rule) {
+        let (value, default) = (parameter.get(&found.parameters), parameter.default());
+        let of_folds = found.folds.iter().map(|fold| parameter.get(&fold.parameters));
+        let [least, most] =
+            of_folds.fold([value, value], |[least, most], of_fold| [least.min(of_fold), most.max(of_fold)]);
+        let (name, unit) = (parameter.name, parameter.unit);
+        let _ = writeln!(
+            text,
+            "{name:<28} {value:.4} {unit} (default {default:.4}; folds {least:.4} to {most:.4})"
+        );
+    }
+    text
+}
+
+fn bar() -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{spinner} {pos} sets of parameters, {elapsed}");
+    ProgressBar::new_spinner().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
+}
+
+fn rule(text: &str) -> Result<RuleName, String> {
+    let names = RuleName::ALL.map(RuleName::name).join(", ");
+    RuleName::parse(text).ok_or_else(|| format!("expected one of {names}"))
+}
+
+fn swept(text: &str) -> Result<(&'static Parameter, usize), String> {
+    let names: Vec<&str> = PARAMETERS.iter().map(|parameter| parameter.name).collect();
+    let expected = || format!("expected NAME=VALUES with 2 to 1000 values and one of {}", names.join(", "));
+    let (name, values) = text.split_once('=').ok_or_else(expected)?;
+    let values = values.parse().ok().filter(|values| (2..=1000).contains(values)).ok_or_else(expected)?;
+    Ok((Parameter::named(name).ok_or_else(expected)?, values))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn options(folder: &std::path::Path, rule: RuleName) -> Fit {
+        let line = |user: &str| {
+            let frames: Vec<String> =
+                (0..=60).map(|i| format!("[{},{},2000,1600,1571,0]", i * 1000 / 30, 1000 + i * 30)).collect();
+            format!(
+                r#"{{"dataset":"made","trial":"{user}","user":"{user}","arena":{{"x":[0,4],"y":[0,4]}},"goal":"B","targets":[{{"id":"A","x":1,"y":3.5,"z":1.6,"r":0.1}},{{"id":"B","x":3.4,"y":2,"z":1.6,"r":0.1}}],"events":{{"reach":2.0}},"cols":["t_ms","x_mm","y_mm","z_mm","yaw_mrad","pitch_mrad"],"frames":[{}]}}"#,
+                frames.join(",")
+            )
+        };
+        let file = folder.join("made_reach.jsonl");
+        std::fs::write(&file, [line("u"), line("v")].join("\n")).unwrap();
+        Fit {
+            paths: vec![file],
+            rule,
+            objects: vec![Objects::Count(2)],
+            task: Vec::new(),
+            people: Vec::new(),
+            folds: 2,
+            sweep: None,
+            out: Some(folder.join("out.toml")),
+            threads: 1,
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_what_a_server_reads_and_says_where_it_comes_from() {
+        let folder = tempfile::tempdir().unwrap();
+        let report = run(&options(folder.path(), RuleName::Paper)).unwrap();
+        assert!(report.contains("on people left out") && report.contains("paper.distance_share"), "{report}");
+        let text = std::fs::read_to_string(folder.path().join("out.toml")).unwrap();
+        let file = ParameterFile::read(&text, "out.toml").unwrap();
+        let fitted = file.fitted.unwrap();
+        assert_eq!((fitted.people, fitted.folds), (vec!["u".to_owned(), "v".to_owned()], 2));
+        assert_eq!((fitted.files[0].name.as_str(), fitted.files[0].sha256.len()), ("made_reach.jsonl", 64));
+        assert!(file.parameters.paper.distance_share > 0.5 && fitted.in_sample < fitted.before);
+    }
+
+    #[test]
+    fn a_rule_without_parameters_and_a_sweep_of_nothing_are_refused_with_the_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let refused = run(&options(folder.path(), RuleName::Nearest)).unwrap_err().to_string();
+        assert!(refused.contains("`nearest`") && refused.contains("paper-best"), "{refused}");
+        assert!(swept("paper.w=13").unwrap_err().contains("paper.distance_share"));
+        assert!(swept("paper.distance_share=1").is_err() && swept("paper.distance_share=13").is_ok());
+        let nobody = Fit { people: vec!["x".into()], ..options(folder.path(), RuleName::Paper) };
+        assert!(run(&nobody).unwrap_err().to_string().contains("no recording"));
+    }
+}

@@ -1,0 +1,221 @@
+//! Fitted to some people, judged on others.
+
+use std::collections::BTreeMap;
+
+use covr_engine::intention::{IntentionParameters, RuleName};
+
+use super::parameters::{Parameter, of_rule};
+use super::search::least;
+
+/// What one person lost, and over how many cases.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tally {
+    /// Sum of the losses.
+    pub loss: f64,
+    /// Number of cases.
+    pub cases: usize,
+}
+
+/// What every person lost, by name.
+pub type Loss = BTreeMap<String, Tally>;
+
+/// What is made least.
+pub trait Objective {
+    /// Its name in files and reports.
+    fn name(&self) -> &'static str;
+
+    /// What everybody loses with these parameters. The people are always the same.
+    fn loss(&self, parameters: &IntentionParameters) -> Loss;
+}
+
+/// One fold: fitted to all but the people left out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fold {
+    /// Who was left out.
+    pub left_out: Vec<String>,
+    /// What was found on the others.
+    pub parameters: IntentionParameters,
+    /// Mean loss on those that it was fitted to.
+    pub in_sample: f64,
+    /// Mean loss on those left out.
+    pub on_left_out: f64,
+}
+
+/// What a fit found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// Fitted to everybody: what is shipped.
+    pub parameters: IntentionParameters,
+    /// Mean loss with the parameters by default.
+    pub before: f64,
+    /// Mean loss with the fitted ones, on the same people.
+    pub in_sample: f64,
+    /// Mean loss of each case under the fold that left its person out; none without folds.
+    pub left_out: Option<f64>,
+    /// The folds.
+    pub folds: Vec<Fold>,
+}
+
+/// Fit a rule's parameters; `folds` groups of people are left out in turn, 0 for none. `told` hears of every
+/// evaluation.
+pub fn fit(objective: &dyn Objective, rule: RuleName, folds: usize, told: &dyn Fn()) -> Fit {
+    let parameters: Vec<&Parameter> = of_rule(rule).collect();
+    let mut known = Known { objective, parameters: &parameters, known: Vec::new(), told };
+    let start: Vec<f64> = parameters.iter().map(|p| p.share_of(p.default())).collect();
+    let people: Vec<String> = known.at(&start).keys().cloned().collect();
+    let everybody = known.fitted(&start, &|_| true);
+    let before = mean(known.at(&start), &|_| true);
+    let groups = if folds < 2 { 0 } else { folds.min(people.len()) };
+    let mut parts = Vec::new();
+    let mut outside = Tally::default();
+    for group in 0..groups {
+        let left_out: Vec<String> = people.iter().skip(group).step_by(groups).cloned().collect();
+        let others = |person: &str| !left_out.iter().any(|one| one == person);
+        let shares = known.fitted(&start, &others);
+        let in_sample = mean(known.at(&shares), &others);
+        let theirs = total(known.at(&shares), &|person| !others(person));
+        outside = outside.with(theirs);
+        let parameters = known.parameters_at(&shares);
+        parts.push(Fold { left_out, parameters, in_sample, on_left_out: theirs.mean() });
+    }
+    Fit {
+        parameters: known.parameters_at(&everybody),
+        before,
+        in_sample: mean(known.at(&everybody), &|_| true),
+        left_out: (!parts.is_empty()).then(|| outside.mean()),
+        folds: parts,
+    }
+}
+
+/// Mean loss at evenly spaced values of one parameter, the others as they are.
+pub fn sweep(
+    objective: &dyn Objective,
+    base: &IntentionParameters,
+    parameter: &Parameter,
+    values: usize,
+    told: &dyn Fn(),
+) -> Vec<(f64, Loss)> {
+    let share = |index: usize| index as f64 / values.saturating_sub(1).max(1) as f64;
+    let at = |index: usize| {
+        let mut parameters = base.clone();
+        let value = parameter.at_share(share(index));
+        parameter.set(&mut parameters, value);
+        let loss = objective.loss(&parameters);
+        told();
+        (value, loss)
+    };
+    (0..values).map(at).collect()
+}
+
+impl Tally {
+    /// Both together.
+    pub fn with(self, other: Self) -> Self {
+        Self { loss: self.loss + other.loss, cases: self.cases + other.cases }
+    }
+
+    /// Mean loss of a case; 0 without any.
+    pub fn mean(self) -> f64 {
+        if self.cases > 0 { self.loss / self.cases as f64 } else { 0.0 }
+    }
+}
+
+/// What was evaluated already.
+struct Known<'a> {
+    objective: &'a dyn Objective,
+    parameters: &'a [&'static Parameter],
+    known: Vec<(Vec<f64>, Loss)>,
+    told: &'a dyn Fn(),
+}
+
+impl Known<'_> {
+    fn at(&mut self, shares: &[f64]) -> &Loss {
+        let place = self.known.iter().position(|(known, _)| known == shares).unwrap_or_else(|| {
+            let loss = self.objective.loss(&self.parameters_at(shares));
+            (self.told)();
+            self.known.push((shares.to_vec(), loss));
+            self.known.len() - 1
+        });
+        &self.known[place].1
+    }
+
+    fn parameters_at(&self, shares: &[f64]) -> IntentionParameters {
+        let mut parameters = IntentionParameters::default();
+        for (parameter, share) in self.parameters.iter().zip(shares) {
+            // A share that is the default's gives the default to the last bit.
+            let is_default = parameter.share_of(parameter.default()) == *share;
+            let value = if is_default { parameter.default() } else { parameter.at_share(*share) };
+            parameter.set(&mut parameters, value);
+        }
+        parameters
+    }
+
+    fn fitted(&mut self, start: &[f64], among: &dyn Fn(&str) -> bool) -> Vec<f64> {
+        least(start, |shares| mean(self.at(shares), among)).shares
+    }
+}
+
+fn total(loss: &Loss, among: &dyn Fn(&str) -> bool) -> Tally {
+    loss.iter().filter(|(person, _)| among(person)).fold(Tally::default(), |sum, (_, tally)| sum.with(*tally))
+}
+
+fn mean(loss: &Loss, among: &dyn Fn(&str) -> bool) -> f64 {
+    total(loss, among).mean()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    /// Each person would like another w.
+    struct Wishes([(&'static str, f64); 4]);
+
+    impl Objective for Wishes {
+        fn name(&self) -> &'static str {
+            "wishes"
+        }
+
+        fn loss(&self, parameters: &IntentionParameters) -> Loss {
+            let of = |(person, wish): &(&str, f64)| {
+                let loss = (parameters.paper.distance_share - wish).powi(2);
+                ((*person).to_owned(), Tally { loss, cases: 1 })
+            };
+            self.0.iter().map(of).collect()
+        }
+    }
+
+    const FOUR: Wishes = Wishes([("a", 0.2), ("b", 0.4), ("c", 0.6), ("d", 0.8)]);
+
+    #[test]
+    fn people_left_out_are_judged_by_what_the_others_wished() {
+        let fit = fit(&FOUR, RuleName::Paper, 4, &|| ());
+        assert!((fit.parameters.paper.distance_share - 0.5).abs() < 0.02, "{fit:?}");
+        assert!(fit.in_sample < fit.before && fit.left_out.unwrap() > fit.in_sample);
+        let of_d = fit.folds.iter().find(|fold| fold.left_out == ["d"]).unwrap();
+        // The others' mean is 0.4: 0.4 away from 0.8.
+        assert!((of_d.parameters.paper.distance_share - 0.4).abs() < 0.02);
+        assert!((of_d.on_left_out - 0.16).abs() < 0.02);
+        let mut left_out: Vec<_> = fit.folds.iter().flat_map(|fold| fold.left_out.clone()).collect();
+        left_out.sort();
+        assert_eq!(left_out, ["a", "b", "c", "d"]);
+    }
+
+    #[test]
+    fn nothing_is_evaluated_twice_and_parameters_that_do_not_matter_stay() {
+        let count = Cell::new(0);
+        let fit = fit(&FOUR, RuleName::Paper, 0, &|| count.set(count.get() + 1));
+        assert!(count.get() < 60, "{}", count.get());
+        assert_eq!((fit.left_out, fit.folds.len()), (None, 0));
+        assert_eq!(fit.parameters.paper.threshold, IntentionParameters::default().paper.threshold);
+    }
+
+    #[test]
+    fn a_sweep_goes_from_end_to_end() {
+        let w = Parameter::named("paper.distance_share").unwrap();
+        let swept = sweep(&FOUR, &IntentionParameters::default(), w, 13, &|| ());
+        assert_eq!((swept.len(), swept[0].0, swept[12].0), (13, 0.0, 1.0));
+        let best =
+            swept.iter().min_by(|a, b| mean(&a.1, &|_| true).total_cmp(&mean(&b.1, &|_| true))).unwrap();
+        assert_eq!(best.0, 0.5);
+    }
+}

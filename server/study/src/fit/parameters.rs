@@ -1,0 +1,147 @@
+//! Every parameter of the intention rules, in one table: fitting, files and documents come from it.
+
+use std::ops::RangeInclusive;
+
+use covr_engine::intention::{IntentionParameters, RuleName};
+
+/// One parameter.
+#[derive(Debug, Clone, Copy)]
+pub struct Parameter {
+    /// `group.name`, as in a parameter file.
+    pub name: &'static str,
+    /// Its unit; empty for a plain number.
+    pub unit: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// The least that makes sense.
+    pub least: f64,
+    /// The most that makes sense.
+    pub most: f64,
+    /// How it is searched.
+    pub scale: Scale,
+    /// The rules that use it.
+    pub rules: &'static [RuleName],
+    place: fn(&mut IntentionParameters) -> &mut f64,
+}
+
+/// How a range is walked through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// By equal differences.
+    Linear,
+    /// By equal ratios; the range is above 0.
+    Ratio,
+}
+
+/// The table.
+pub const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "paper.distance_share",
+        unit: "",
+        meaning: "w: the share of distance in a weight, the rest being that of direction.",
+        least: 0.0,
+        most: 1.0,
+        scale: Scale::Linear,
+        rules: PAPER,
+        place: |p| &mut p.paper.distance_share,
+    },
+    Parameter {
+        name: "paper.threshold",
+        unit: "",
+        meaning: "A weight above this is a commitment.",
+        least: 0.5,
+        most: 1.0,
+        scale: Scale::Linear,
+        rules: PAPER,
+        place: |p| &mut p.paper.threshold,
+    },
+];
+
+/// The paper's rule in all its readings.
+const PAPER: &[RuleName] =
+    &[RuleName::Paper, RuleName::PaperLiteral, RuleName::PaperBest, RuleName::PaperHeld];
+
+/// The parameters that a rule uses.
+pub fn of_rule(rule: RuleName) -> impl Iterator<Item = &'static Parameter> {
+    PARAMETERS.iter().filter(move |parameter| parameter.rules.contains(&rule))
+}
+
+impl Parameter {
+    /// The parameter of this name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        PARAMETERS.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// Its value.
+    pub fn get(&self, parameters: &IntentionParameters) -> f64 {
+        *(self.place)(&mut parameters.clone())
+    }
+
+    /// Give it a value.
+    pub fn set(&self, parameters: &mut IntentionParameters, value: f64) {
+        *(self.place)(parameters) = value;
+    }
+
+    /// Its value by default.
+    pub fn default(&self) -> f64 {
+        self.get(&IntentionParameters::default())
+    }
+
+    /// What it may be.
+    pub fn range(&self) -> RangeInclusive<f64> {
+        self.least..=self.most
+    }
+
+    /// The value at a share of its range, 0 to 1.
+    pub fn at_share(&self, share: f64) -> f64 {
+        let value = match self.scale {
+            Scale::Linear => self.least + (self.most - self.least) * share,
+            Scale::Ratio => self.least * (self.most / self.least).powf(share),
+        };
+        value.clamp(self.least, self.most)
+    }
+
+    /// Where in its range a value lies, 0 to 1.
+    pub fn share_of(&self, value: f64) -> f64 {
+        let share = match self.scale {
+            Scale::Linear => (value - self.least) / (self.most - self.least),
+            Scale::Ratio => (value / self.least).ln() / (self.most / self.least).ln(),
+        };
+        share.clamp(0.0, 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_parameter_has_a_name_a_range_about_its_default_and_a_place_of_its_own() {
+        let names: BTreeSet<_> = PARAMETERS.iter().map(|parameter| parameter.name).collect();
+        assert_eq!(names.len(), PARAMETERS.len());
+        for parameter in PARAMETERS {
+            assert!(parameter.range().contains(&parameter.default()), "{}", parameter.name);
+            assert!(parameter.scale == Scale::Linear || parameter.least > 0.0, "{}", parameter.name);
+            let mut changed = IntentionParameters::default();
+            let value = parameter.at_share(0.37);
+            parameter.set(&mut changed, value);
+            for other in PARAMETERS {
+                let expected = if other.name == parameter.name { value } else { other.default() };
+                assert_eq!(other.get(&changed), expected, "{} and {}", parameter.name, other.name);
+            }
+        }
+    }
+
+    #[test]
+    fn shares_are_read_back_on_both_scales() {
+        let linear = PARAMETERS[0];
+        let ratio = Parameter { least: 0.01, most: 100.0, scale: Scale::Ratio, ..linear };
+        assert!((ratio.at_share(0.5) - 1.0).abs() < 1e-12);
+        for parameter in [linear, ratio] {
+            for share in [0.0, 0.2, 0.5, 1.0] {
+                assert!((parameter.share_of(parameter.at_share(share)) - share).abs() < 1e-12);
+            }
+        }
+    }
+}
