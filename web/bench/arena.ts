@@ -4,8 +4,10 @@
  * for a browser with and without a GPU. `npm run dev`, then open /bench/arena.html.
  */
 import type { ObjectDocument, SceneDocument } from "../src/api/types";
+import "../src/style/colours.css";
 import "../src/style/base.css";
-import "../src/style/live.css";
+import "../src/style/picture.css";
+import "../src/style/desk.css";
 import { planOf } from "../src/lib/camera";
 import { readPalette } from "../src/lib/theme";
 import { TrailKeeper } from "../src/lib/trails";

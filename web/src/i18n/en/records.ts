@@ -25,7 +25,7 @@ export const records = {
     upload: "Upload",
     howToUpload: "Drag a scene’s JSON file anywhere onto this page, or choose it. It is checked first; nothing is stored before you say so.",
     choose: "Choose a file…",
-    pick: "Choose a scene on the left, or a file to upload.",
+    pick: "Choose a scene from the list, or a file to upload.",
     close: "Close",
     edit: "Edit as new version",
     download: "Download JSON",

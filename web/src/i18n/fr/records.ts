@@ -25,7 +25,7 @@ export const records = {
     upload: "Importer",
     howToUpload: "Déposez le fichier JSON d’une scène n’importe où sur cette page, ou choisissez-le. Il est d’abord vérifié ; rien n’est enregistré sans votre accord.",
     choose: "Choisir un fichier…",
-    pick: "Choisissez une scène à gauche, ou un fichier à importer.",
+    pick: "Choisissez une scène dans la liste, ou un fichier à importer.",
     close: "Fermer",
     edit: "Modifier en nouvelle version",
     download: "Télécharger le JSON",
