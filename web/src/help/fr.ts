@@ -56,7 +56,7 @@ export const help: HelpText = {
     },
     R2: {
       title: "Suivi perdu",
-      happened: "La dernière pose de quelqu’un date de plus de 0.5 s, ou son casque ne connaît plus sa place, ou sa pose a sauté plus vite qu’une tête ne bouge (6 m/s). La colonne freine et se maintient.",
+      happened: "La dernière pose de quelqu’un date de plus de 0,5 s, ou son casque ne connaît plus sa place, ou sa pose a sauté plus vite qu’une tête ne bouge (6 m/s). La colonne freine et se maintient.",
       steps: [
         "Voyez de qui il s’agit : la liste des personnes le dit.",
         "Demandez à la personne de ne plus bouger jusqu’à ce que le casque se retrouve. Cherchez une caméra masquée, un coin sombre, un réseau saturé.",
@@ -128,7 +128,7 @@ export const help: HelpText = {
     },
     homing: {
       title: "Prise d’origine refusée ou en attente",
-      happened: "La prise d’origine est refusée quand la machine est armée ou arrêtée, et quand son chemin vers le coin passe à moins de 0.41 m d’une zone interdite. Tant qu’une personne suivie est proche, elle attend.",
+      happened: "La prise d’origine est refusée quand la machine est armée ou arrêtée, et quand son chemin vers le coin passe à moins de 0,41 m d’une zone interdite. Tant qu’une personne suivie est proche, elle attend.",
       steps: [
         "Lisez la raison à côté du bouton.",
         "Armée : désarmez d’abord. Arrêtée : réinitialisez d’abord.",
@@ -155,13 +155,13 @@ export const help: HelpText = {
       clears: "Une réinitialisation motivée, une fois la colonne dans sa course.",
     },
     R2: {
-      watches: "Chacun dans l’arène porte un casque suivi, dont la pose a au plus 0.5 s.",
-      happens: "Une pose plus vieille fait garder plus de distance ; à 0.5 s, c’est un arrêt de protection.",
+      watches: "Chacun dans l’arène porte un casque suivi, dont la pose a au plus 0,5 s.",
+      happens: "Une pose plus vieille fait garder plus de distance ; à 0,5 s, c’est un arrêt de protection.",
       you: "Demandez à la personne de ne plus bouger et cherchez ce qui masque ou ralentit le casque.",
       clears: "D’elle-même, 1 s après que tous les casques sont de nouveau suivis.",
     },
     R3: {
-      watches: "La distance à chaque personne : la colonne ne peut bouger que si elle pouvait s’immobiliser avant que quiconque marchant à 1.6 m/s, dans n’importe quelle direction, soit à moins de 0.35 m d’elle. Moins, 0.25 m, pour une colonne lente près d’un objet que le visiteur va toucher ; plus, 1 m, pour quelqu’un de baissé.",
+      watches: "La distance à chaque personne : la colonne ne peut bouger que si elle pouvait s’immobiliser avant que quiconque marchant à 1,6 m/s, dans n’importe quelle direction, soit à moins de 0,35 m d’elle. Moins, 0,25 m, pour une colonne lente près d’un objet que le visiteur va toucher ; plus, 1 m, pour quelqu’un de baissé.",
       happens: "Elle ralentit, contourne ou attend. C’est son travail de tous les jours, pas un arrêt.",
       you: "Rien. Si la colonne attend trop souvent, donnez plus de place aux personnes ou écartez les objets.",
       clears: "D’elle-même, dès qu’il y a de nouveau de la place.",
@@ -185,7 +185,7 @@ export const help: HelpText = {
       clears: "Une réinitialisation motivée.",
     },
     R7: {
-      watches: "Le mouvement est vraisemblable : conforme à la commande (à 0.35 m/s près), sans blocage, avec des fins de course trouvées et une origine conservée.",
+      watches: "Le mouvement est vraisemblable : conforme à la commande (à 0,35 m/s près), sans blocage, avec des fins de course trouvées et une origine conservée.",
       happens: "Arrêt verrouillé. Une tête qui saute à plus de 6 m/s compte plutôt comme un suivi perdu (R2).",
       you: "Vérifiez moteurs, codeurs, courroies et fins de course.",
       clears: "Une réinitialisation motivée ; ensuite, la prise d’origine.",
@@ -221,7 +221,7 @@ export const help: HelpText = {
       clears: "Il n’y a rien à lever.",
     },
     R13: {
-      watches: "Les zones interdites de la scène : meubles, places de spectateurs. La colonne garde 0.35 m, plus sa distance de freinage, avec chacune.",
+      watches: "Les zones interdites de la scène : meubles, places de spectateurs. La colonne garde 0,35 m, plus sa distance de freinage, avec chacune.",
       happens: "Elle ralentit, contourne ou attend.",
       you: "Dessinez les zones là où les choses sont vraiment, et corrigez la scène quand elles bougent.",
       clears: "D’elle-même.",

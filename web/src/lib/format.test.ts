@@ -1,5 +1,6 @@
-import { describe, expect, it } from "vitest";
-import { lateBySecs, millis, modeWords, percent, span, timeOfDay } from "./format";
+import { describe, expect, it, onTestFinished, vi } from "vitest";
+import { useLanguage } from "../i18n";
+import { decimal, lateBySecs, millis, modeWords, pair, percent, span, timeOfDay } from "./format";
 
 describe("values", () => {
   it.each([
@@ -19,6 +20,18 @@ describe("values", () => {
     expect(percent(0.335)).toBe("34 %");
     expect(modeWords("latched_stop")).toBe("Latched stop");
     expect(timeOfDay("not a moment")).toBe("not a moment");
+  });
+
+  it("have a comma in French, and a semicolon between two", () => {
+    vi.stubGlobal("document", { documentElement: {} });
+    useLanguage("fr");
+    onTestFinished(() => {
+      useLanguage("en");
+      vi.unstubAllGlobals();
+    });
+    expect(decimal(-0.5, 2)).toBe("-0,50");
+    expect(pair([1.25, 3], 1)).toBe("1,3 ; 3,0");
+    expect(span(0.42)).toBe("0,4 s");
   });
 
   it("are late by what the column comes after the hand", () => {

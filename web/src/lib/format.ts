@@ -1,15 +1,26 @@
 /** Decides how values read: fixed digits, so that nothing jumps about while it changes. */
 import type { Mode } from "../api/types";
-import { words } from "../i18n";
+import { language, words } from "../i18n";
+
+/** A number with so many digits after the decimal sign of the page's language. */
+export function decimal(value: number, digits: number): string {
+  const plain = value.toFixed(digits);
+  return language() === "fr" ? plain.replace(".", ",") : plain;
+}
+
+/** Two numbers beside one another, told apart from their decimal signs. */
+export function pair([first, second]: readonly [number, number], digits: number): string {
+  return `${decimal(first, digits)}${language() === "fr" ? " ; " : ", "}${decimal(second, digits)}`;
+}
 
 /** Metres with two digits, sign kept. */
 export function metres(value: number): string {
-  return value.toFixed(2);
+  return decimal(value, 2);
 }
 
 /** A short span: `0.42 s`, `12 s`, `3 min 05 s`, `2 h 10 min`. */
 export function span(secs: number): string {
-  if (secs < 10) return `${Math.max(0, secs).toFixed(1)} s`;
+  if (secs < 10) return `${decimal(Math.max(0, secs), 1)} s`;
   const whole = Math.floor(secs);
   if (whole < 60) return `${whole} s`;
   if (whole < 3600) return `${Math.floor(whole / 60)} min ${pad(whole % 60)} s`;
@@ -18,7 +29,7 @@ export function span(secs: number): string {
 
 /** Milliseconds, one digit below ten. */
 export function millis(value: number): string {
-  return `${value < 9.95 ? value.toFixed(1) : String(Math.round(value))} ms`;
+  return `${value < 9.95 ? decimal(value, 1) : String(Math.round(value))} ms`;
 }
 
 /** A share as whole percent. */

@@ -2,6 +2,7 @@
  * The replay's clock: where it stands in a session, how fast it goes, and whether it follows a session that still runs.
  * It decides nothing about frames; it never leaves the session. Pure: the time that passed comes in as an argument.
  */
+import { decimal } from "./format";
 
 /** How a replay stands. Seconds count from the session's start. */
 export interface Player {
@@ -71,7 +72,7 @@ export function timeBeside(times: readonly number[], atSecs: number, by: 1 | -1)
 export function clockOf(secs: number): string {
   const tenths = Math.round(Math.max(0, secs) * 10);
   const [hours, minutes] = [Math.floor(tenths / 36_000), Math.floor(tenths / 600) % 60];
-  const rest = ((tenths % 600) / 10).toFixed(1).padStart(4, "0");
+  const rest = decimal((tenths % 600) / 10, 1).padStart(4, "0");
   return hours > 0 ? `${hours}:${String(minutes).padStart(2, "0")}:${rest}` : `${minutes}:${rest}`;
 }
 

@@ -2,7 +2,7 @@
 import { createMemo, For, Show, type JSX } from "solid-js";
 import type { Client, ControlLoop, LinkThresholds, Threshold } from "../api/types";
 import { words } from "../i18n";
-import { millis } from "../lib/format";
+import { decimal, millis } from "../lib/format";
 import { gradeOf, growth, keyed, NO_LINKS, takeLinks, trace, worst, type ClientMeasure, type Grade, type LinksSeen } from "../live/links";
 import type { Live } from "../live/live";
 import { createRing, nowMicros } from "../live/ring";
@@ -46,7 +46,7 @@ export function LinkQuality(props: { readonly live: Live }): JSX.Element {
     const pick = (measure: ClientMeasure) => (entry: LinksSeen) => entry.clients.get(key)?.[measure];
     const of = (measure: ClientMeasure, name: string, format: (value: number) => string, threshold: Threshold | null): Measure =>
       graded(`link-${key}-${measure}`, name, client[measure], threshold, format, pick(measure));
-    const rate: Measure = { ...of("pose_rate_hz", text().rate, (value) => text().perSecond(value.toFixed(0)), null), grade: null };
+    const rate: Measure = { ...of("pose_rate_hz", text().rate, (value) => text().perSecond(decimal(value, 0)), null), grade: null };
     const errors = seen(pick("errors"));
     const fresh = growth(errors);
     return [
@@ -93,7 +93,7 @@ export function LinkQuality(props: { readonly live: Live }): JSX.Element {
       {
         name: text().snapshotRate,
         testId: "link-page-rate",
-        format: (value) => text().perSecond(value.toFixed(0)),
+        format: (value) => text().perSecond(decimal(value, 0)),
         // The second that is going on is not over.
         value: text().perSecond(String(rates.at(-2) ?? 0)),
         grade: null,
@@ -127,7 +127,7 @@ export function LinkQuality(props: { readonly live: Live }): JSX.Element {
         <Show when={props.live.snapshot()?.control_loop}>
           {(loop) => (
             <>
-              <Link title={text().loop} more={`${loop().rate_hz.toFixed(0)} Hz`} measures={ofLoop(loop())} testId="link-loop" />
+              <Link title={text().loop} more={`${decimal(loop().rate_hz, 0)} Hz`} measures={ofLoop(loop())} testId="link-loop" />
               <p class="scheduling">
                 {text().scheduling} <span lang="en">{loop().scheduling}</span>
               </p>
@@ -207,7 +207,7 @@ function sparkWords(measure: Measure | undefined): string {
 }
 
 function percents(value: number): string {
-  return `${value.toFixed(1)} %`;
+  return `${decimal(value, 1)} %`;
 }
 
 const SHAPES: Readonly<Record<Grade, string>> = { good: "●", weak: "▲", bad: "■", unknown: "○" };

@@ -46,7 +46,7 @@ describe("a person's separation", () => {
     expect([...screen.getByTestId("terms-1").querySelectorAll("dd")].map((entry) => entry.textContent)).toEqual(["0.45", "0.06", "0.20", "0.10", "0.02", "0.83 m"]);
     expect(screen.getByTestId("limits-1").textContent).toBe("limits the column");
     useLanguage("fr");
-    expect(screen.getByTestId("binding-1").textContent).toBe("freinage domine : 0.20 m");
+    expect(screen.getByTestId("binding-1").textContent).toBe("freinage domine : 0,20 m");
   });
 
   it("shows no term that the server does not tell, and nothing of who has no pose", () => {

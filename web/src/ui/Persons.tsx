@@ -84,7 +84,7 @@ function Separation(props: { readonly person: Person }): JSX.Element {
         aria-label={words().live.distanceOf(props.person.name)}
         aria-valuemin={0}
         aria-valuemax={DISTANCE_SHOWN_M}
-        aria-valuenow={Number(metres(Math.min(DISTANCE_SHOWN_M, props.person.distance_m)))}
+        aria-valuenow={Math.min(DISTANCE_SHOWN_M, props.person.distance_m)}
         aria-valuetext={`${metres(props.person.distance_m)} m ${words().live.away}, ${metres(props.person.required_m)} m ${words().live.required}`}
       >
         <Index each={rings()}>

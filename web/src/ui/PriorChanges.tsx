@@ -2,7 +2,7 @@
 import { For, Show, type JSX } from "solid-js";
 import type { PriorChange } from "../api/types";
 import { words } from "../i18n";
-import { dayAndTime, timeOfDay } from "../lib/format";
+import { dayAndTime, decimal, timeOfDay } from "../lib/format";
 import { samePrior, type PriorsNow, type SetBack } from "../lib/priorDrafts";
 
 /** The last change in a line; the others in a table under it. */
@@ -14,7 +14,7 @@ export function PriorChanges(props: {
   readonly setBack: (change: SetBack) => void;
 }): JSX.Element {
   const text = (): ReturnType<typeof words>["desk"]["priors"] => words().desk.priors;
-  const what = ({ object, from, to }: PriorChange): string => text().change(props.label(object), from.toFixed(2), to.toFixed(2));
+  const what = ({ object, from, to }: PriorChange): string => text().change(props.label(object), decimal(from, 2), decimal(to, 2));
   const who = (change: PriorChange): string => (change.author === "" ? text().somebody : change.author);
   return (
     <Show when={props.changes[0]} fallback={<p class="empty">{text().noChanges}</p>}>
@@ -43,8 +43,8 @@ export function PriorChanges(props: {
                       <td><time datetime={change.at} title={dayAndTime(change.at)}>{timeOfDay(change.at)}</time></td>
                       <td class="wraps">{who(change)}</td>
                       <td class="wraps">{props.label(change.object)}</td>
-                      <td>{change.from.toFixed(2)}</td>
-                      <td>{change.to.toFixed(2)}</td>
+                      <td>{decimal(change.from, 2)}</td>
+                      <td>{decimal(change.to, 2)}</td>
                       <td>
                         <Show when={props.inForce[change.object] !== undefined}>
                           <Show when={!samePrior(props.inForce[change.object] ?? NaN, change.from)} fallback={<small>{text().setBackIsSo}</small>}>
@@ -52,7 +52,7 @@ export function PriorChanges(props: {
                               type="button"
                               class="chip"
                               disabled={props.frozen}
-                              aria-label={text().setBackWhat(text().change(props.label(change.object), change.to.toFixed(2), change.from.toFixed(2)))}
+                              aria-label={text().setBackWhat(text().change(props.label(change.object), decimal(change.to, 2), decimal(change.from, 2)))}
                               onClick={() => { props.setBack(change); }}
                             >
                               {text().setBack}

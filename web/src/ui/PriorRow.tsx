@@ -3,6 +3,7 @@ import { createSignal, Show, type JSX } from "solid-js";
 import type { ObjectState } from "../api/types";
 import { words } from "../i18n";
 import { readPrior, type Draft } from "../lib/priorDrafts";
+import { decimal } from "../lib/format";
 
 /** A row. The number field refuses what is no prior, and says what it expects. */
 export function PriorRow(props: {
@@ -27,8 +28,8 @@ export function PriorRow(props: {
     }
     setWrong(null);
     // Two digits are shown: a field that was left as it stood changes nothing.
-    if (field.value !== value().toFixed(2)) props.move(read.value);
-    field.value = value().toFixed(2);
+    if (field.value !== decimal(value(), 2)) props.move(read.value);
+    field.value = decimal(value(), 2);
     return true;
   };
   const notes = `prior-notes-${props.object.id}`;
@@ -43,7 +44,7 @@ export function PriorRow(props: {
         value={value()}
         disabled={props.frozen}
         aria-label={text().sliderOf(props.label)}
-        aria-valuetext={value().toFixed(2)}
+        aria-valuetext={decimal(value(), 2)}
         aria-describedby={notes}
         data-testid={`prior-${props.object.id}`}
         style={{ "--in-force": String(props.inForce) }}
@@ -57,7 +58,7 @@ export function PriorRow(props: {
         inputmode="decimal"
         maxlength="8"
         autocomplete="off"
-        value={value().toFixed(2)}
+        value={decimal(value(), 2)}
         disabled={props.frozen}
         aria-label={text().numberOf(props.label)}
         aria-invalid={wrong() !== null}
@@ -69,21 +70,21 @@ export function PriorRow(props: {
           if (event.key === "Enter" && !typed(event.currentTarget)) event.preventDefault();
         }}
       />
-      <output class="unseen" data-testid={`prior-value-${props.object.id}`}>{props.inForce.toFixed(2)}</output>
+      <output class="unseen" data-testid={`prior-value-${props.object.id}`}>{decimal(props.inForce, 2)}</output>
       <span class="prior-notes" id={notes}>
         <Show when={wrong()}>{(why) => <span class="bad" role="alert" data-testid={`prior-wrong-${props.object.id}`}>{why()}</span>}</Show>
         <Show when={props.draft !== null}>
           <span class="prior-edited" data-testid={`prior-edited-${props.object.id}`}>
-            {text().edited} ({text().inForce(props.inForce.toFixed(2))})
+            {text().edited} ({text().inForce(decimal(props.inForce, 2))})
           </span>
         </Show>
         <Show when={props.overtakenBy !== null}>
           <span class="prior-overtaken" data-testid={`prior-overtaken-${props.object.id}`}>
-            {props.overtakenBy === "" ? text().overtaken(props.inForce.toFixed(2)) : text().overtakenBy(props.overtakenBy ?? "", props.inForce.toFixed(2))}
+            {props.overtakenBy === "" ? text().overtaken(decimal(props.inForce, 2)) : text().overtakenBy(props.overtakenBy ?? "", decimal(props.inForce, 2))}
           </span>
         </Show>
         <Show when={props.weightThen}>
-          {(then) => <span class="prior-weight">{text().weightWouldBe(props.object.weight.toFixed(2), then().toFixed(2))}</span>}
+          {(then) => <span class="prior-weight">{text().weightWouldBe(decimal(props.object.weight, 2), decimal(then(), 2))}</span>}
         </Show>
       </span>
     </li>

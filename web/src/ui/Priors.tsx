@@ -13,6 +13,7 @@ import { Previewer, type PreviewState } from "../live/preview";
 import { PriorChanges } from "./PriorChanges";
 import { PriorPreviewWords } from "./PriorPreviewWords";
 import { PriorRow } from "./PriorRow";
+import { decimal } from "../lib/format";
 
 /** Where the column would go, for the picture. */
 export interface PriorGhost {
@@ -125,7 +126,7 @@ export function Priors(props: {
   const changeWords = (list: readonly SetBack[]): string => {
     const [first, ...others] = list;
     if (first === undefined) return "";
-    const one = text().change(label(first.object), first.from.toFixed(2), first.to.toFixed(2));
+    const one = text().change(label(first.object), decimal(first.from, 2), decimal(first.to, 2));
     return others.length === 0 ? one : `${one} ${text().more(others.length)}`;
   };
   const send = async (priors: PriorsNow, done: string): Promise<boolean> => {
@@ -293,7 +294,7 @@ function previewed(state: PreviewState): PriorPreview | null {
 }
 
 function priorText(prior: number | undefined): string {
-  return prior === undefined ? "–" : prior.toFixed(2);
+  return prior === undefined ? "–" : decimal(prior, 2);
 }
 
 function messageOf(error: unknown): string {

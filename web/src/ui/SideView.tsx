@@ -6,6 +6,7 @@ import type { Bounds } from "../lib/plan";
 import { drawSide, elevationKept } from "./drawing/side";
 import { boundsOf, type ArenaPicture } from "./drawing/picture";
 import { PlanCanvas } from "./PlanCanvas";
+import { decimal } from "../lib/format";
 
 /** Picture and the choice of its axis. */
 export function SideView(props: {
@@ -56,7 +57,7 @@ function headWords({ state }: ArenaPicture): string {
   return (state?.persons ?? [])
     .filter((person) => person.head_m !== null)
     // A tenth is enough to hear, and changes less often.
-    .map((person) => words().live.headHeight(person.name, (person.head_m?.[2] ?? 0).toFixed(1)))
+    .map((person) => words().live.headHeight(person.name, decimal(person.head_m?.[2] ?? 0, 1)))
     .join("; ");
 }
 

@@ -2,7 +2,7 @@
 import { createMemo, createSignal, For, Show, type JSX } from "solid-js";
 import type { WireEvent } from "../api/types";
 import { words } from "../i18n";
-import { dayAndTime, timeOfDay } from "../lib/format";
+import { dayAndTime, decimal, timeOfDay } from "../lib/format";
 import { labelOf } from "../lib/labels";
 import { GROUP_NAMES, groupOf, keyOf, personOf, type Filter, type Group } from "../lib/timeline";
 import type { Live } from "../live/live";
@@ -194,7 +194,7 @@ function Details(props: { readonly event: WireEvent; readonly label: (id: string
         </div>
         <div>
           <dt>{text().serverClock}</dt>
-          <dd>{(props.event.at_micros / 1e6).toFixed(3)} s</dd>
+          <dd>{decimal(props.event.at_micros / 1e6, 3)} s</dd>
         </div>
       </dl>
     </div>

@@ -2,7 +2,7 @@
 import { createEffect, createMemo, createSignal, For, onCleanup, onMount, Show, untrack, type Accessor, type JSX } from "solid-js";
 import { language, words } from "../i18n";
 import { labelOf } from "../lib/labels";
-import { metres, span } from "../lib/format";
+import { decimal, metres, pair, span } from "../lib/format";
 import type { Layout } from "../lib/layout";
 import { TrailKeeper, type Trails } from "../lib/trails";
 import type { Live } from "../live/live";
@@ -137,11 +137,11 @@ function summaryOf(live: Live): string {
   const snapshot = live.newest();
   if (snapshot === null) return words().live.nothingKnown;
   const { column, persons } = snapshot;
-  const at = ([x, y]: readonly [number, number, ...number[]]): [string, string] => [x.toFixed(1), y.toFixed(1)];
+  const at = ([x, y]: readonly [number, number, ...number[]]): [string, string] => [decimal(x, 1), decimal(y, 1)];
   return [
     column.homed ? words().live.columnAt(...at(column.position_m)) : words().live.columnNowhere,
     ...persons.map((person) =>
-      person.head_m === null ? words().live.personNowhere(person.name) : words().live.personAt(person.name, ...at(person.head_m), person.distance_m.toFixed(1)),
+      person.head_m === null ? words().live.personNowhere(person.name) : words().live.personAt(person.name, ...at(person.head_m), decimal(person.distance_m, 1)),
     ),
   ].join(" ");
 }
@@ -209,10 +209,10 @@ function columnNumbers(live: Live): Record<"position" | "speed" | "target" | "cu
   const [x, y] = column.position_m;
   const [vx, vy] = column.velocity_mps;
   return {
-    position: column.homed ? `${metres(x)}, ${metres(y)} m` : words().live.notHomed,
+    position: column.homed ? `${pair([x, y], 2)} m` : words().live.notHomed,
     speed: `${metres(Math.hypot(vx, vy))} m/s`,
-    target: column.target_m === null ? words().live.none : `${metres(column.target_m[0])}, ${metres(column.target_m[1])} m`,
-    current: `${column.current_amps[0].toFixed(1)}, ${column.current_amps[1].toFixed(1)} A`,
+    target: column.target_m === null ? words().live.none : `${pair([column.target_m[0], column.target_m[1]], 2)} m`,
+    current: `${pair([column.current_amps[0], column.current_amps[1]], 1)} A`,
   };
 }
 

@@ -2,6 +2,7 @@
 import { createEffect, createSignal, onCleanup, onMount, type JSX } from "solid-js";
 import { words } from "../i18n";
 import type { Bar } from "../live/weights";
+import { decimal } from "../lib/format";
 
 /** One strip. Colours come from the page's own. */
 export function WeightStrip(props: {
@@ -45,8 +46,8 @@ export function stripWords(bars: readonly (Bar | null)[], served: readonly numbe
   const weights = known.map(({ weight }) => weight);
   const secs = (count: number): number => Math.round((count * 60) / bars.length);
   const said = text.strip(
-    Math.min(...weights).toFixed(2),
-    Math.max(...weights).toFixed(2),
+    decimal(Math.min(...weights), 2),
+    decimal(Math.max(...weights), 2),
     secs(known.filter(({ committed }) => committed).length),
     secs(bars.length - known.length),
   );

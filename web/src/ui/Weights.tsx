@@ -2,7 +2,7 @@
 import { createMemo, createSignal, For, Show, type JSX } from "solid-js";
 import type { ObjectState, SceneDocument } from "../api/types";
 import { words } from "../i18n";
-import { lateBySecs, percent } from "../lib/format";
+import { decimal, lateBySecs, percent } from "../lib/format";
 import { labelOf } from "../lib/labels";
 import { createRing, nowMicros } from "../live/ring";
 import type { Live } from "../live/live";
@@ -50,7 +50,7 @@ export function Weights(props: { readonly live: Live }): JSX.Element {
           title={text().onlyHeavyMeans}
           onClick={() => setOnlyHeavy((only) => !only)}
         >
-          {text().onlyHeavy(String(HEAVY_FROM))}
+          {text().onlyHeavy(decimal(HEAVY_FROM, 1))}
         </button>
       </div>
       <Show when={shown().length > 0} fallback={<p class="empty">{objects().length === 0 ? text().empty : text().nothingFound}</p>}>
@@ -106,10 +106,10 @@ function Row(props: {
       </span>
       <Show when={props.enabled} fallback={<span class="weight-off">{words().desk.weights.off}</span>}>
         <WeightStrip bars={props.bars} served={props.served} />
-        <span class="weight-now" data-testid={`weight-${props.object.id}`}>{props.object.weight.toFixed(2)}</span>
+        <span class="weight-now" data-testid={`weight-${props.object.id}`}>{decimal(props.object.weight, 2)}</span>
         <span class="weight-share">{percent(props.object.probability)}</span>
         <span class="weight-late" classList={{ bad: isLate() }}>
-          {late() === null || !Number.isFinite(late()) ? "–" : isLate() ? `${(late() ?? 0).toFixed(1)} s` : words().desk.weights.inTime}
+          {late() === null || !Number.isFinite(late()) ? "–" : isLate() ? `${decimal(late() ?? 0, 1)} s` : words().desk.weights.inTime}
         </span>
       </Show>
     </li>

@@ -18,7 +18,7 @@ it("says what happened in the page's language, with the objects' labels", () => 
   const prior = event("prior_changed", { author: "Grace", object: "lamp", from: 0.5, to: 1 });
   expect(eventWords(prior, label)).toEqual({ text: "Grace: prior of Bedside lamp 0.50 → 1.00", server: null });
   useLanguage("fr");
-  expect(eventWords(prior, label).text).toBe("Grace : a priori de Bedside lamp 0.50 → 1.00");
+  expect(eventWords(prior, label).text).toBe("Grace : a priori de Bedside lamp 0,50 → 1,00");
   expect(eventWords(event("served", { person: 1, name: "Ada", object: "lamp" }), label).text).toBe("la colonne est à Bedside lamp pour Ada");
 });
 

@@ -1,7 +1,7 @@
 /** What an event says, in the page's language where its kind and particulars tell; the server's own words beside it. */
 import type { Mode, WireEvent } from "../api/types";
 import { words } from "../i18n";
-import { millis, modeWords } from "../lib/format";
+import { decimal, millis, modeWords } from "../lib/format";
 
 /** An event in words. */
 export interface EventWords {
@@ -59,7 +59,7 @@ function textOf(event: WireEvent, label: (object: string) => string): EventWords
     case "prior_changed": {
       const [from, to] = [number("from"), number("to")];
       if (from === null || to === null) return null;
-      return of((author: string, object: string) => text.prior_changed(author, object, from.toFixed(2), to.toFixed(2)), ["author", "object"]);
+      return of((author: string, object: string) => text.prior_changed(author, object, decimal(from, 2), decimal(to, 2)), ["author", "object"]);
     }
     case "person_entered":
     case "person_left":
@@ -98,7 +98,7 @@ function valueOf(kind: string, name: string, value: unknown, label: (object: str
   if (value === null) return { value: details.nothing, foreign: false };
   if (typeof value === "boolean") return { value: value ? details.yes : details.no, foreign: false };
   if (name === "to_drive_micros" && typeof value === "number") return { value: millis(value / 1000), foreign: false };
-  if (typeof value === "number") return { value: kind === "prior_changed" ? value.toFixed(2) : String(value), foreign: false };
+  if (typeof value === "number") return { value: kind === "prior_changed" ? decimal(value, 2) : String(value), foreign: false };
   if (typeof value !== "string") return { value: JSON.stringify(value), foreign: false };
   if (name === "object") return { value: label(value), foreign: false };
   if (kind === "mode_changed" && isMode(value)) return { value: modeWords(value), foreign: false };

@@ -6,6 +6,7 @@ import { words } from "../../i18n";
 import { disc, FONT_LABEL, FONT_SMALL, line, pixelsAround, tracePath, widthOf, write, type Brush } from "./brush";
 import { HEAD_M, type Note } from "./persons";
 import { footprintKept, nameOf, type ArenaState, type DrawnObject } from "./picture";
+import { decimal } from "../../lib/format";
 
 /** Footprints with their weights, and what is predicted. */
 export function drawObjects(brush: Brush, scene: SceneDocument, state: ArenaState | null): void {
@@ -58,7 +59,7 @@ export function drawLabels(brush: Brush, scene: SceneDocument, state: ArenaState
     if (about.right < 0 || about.left > widthPx || about.bottom < 0 || about.top > heightPx) continue;
     const object = states.get(document.id);
     const name = nameOf(document);
-    const number = !document.enabled ? words().live.off : object === undefined ? "" : object.weight.toFixed(2);
+    const number = !document.enabled ? words().live.off : object === undefined ? "" : decimal(object.weight, 2);
     labels.push({
       name,
       number,

@@ -6,7 +6,7 @@ import { createEffect, createMemo, createSignal, For, on, onCleanup, Show, untra
 import { exportAddress, listSessionEvents, readFrames, readScene, readSession } from "../../api/http";
 import type { RecordedFrame, SceneDocument, SessionDetail, WireEvent } from "../../api/types";
 import { words } from "../../i18n";
-import { dayAndTime, metres, span } from "../../lib/format";
+import { dayAndTime, decimal, metres, span } from "../../lib/format";
 import { labelOf } from "../../lib/labels";
 import { clockOf, play, playerAt, timeBeside, type Player, type PlayerAction } from "../../lib/player";
 import { densityFor, EVERY_FRAME, Recording, type Density, type Moment } from "../../lib/recording";
@@ -302,9 +302,9 @@ function Now(props: { readonly frame: RecordedFrame | null; readonly scene: Scen
                   return (
                     <tr classList={{ predicted: committed() === objectId }}>
                       <th scope="row">{labelOf(props.scene, objectId)}</th>
-                      <td class="number weight" style={{ "--share": String(object()?.probability ?? 0) }}>{object()?.weight.toFixed(2)}</td>
+                      <td class="number weight" style={{ "--share": String(object()?.probability ?? 0) }}>{twoDigits(object()?.weight)}</td>
                       <td class="number">{Math.round((object()?.probability ?? 0) * 100)} %</td>
-                      <td class="number">{object()?.prior.toFixed(2)}</td>
+                      <td class="number">{twoDigits(object()?.prior)}</td>
                     </tr>
                   );
                 }}
@@ -358,6 +358,10 @@ function keepInSight(button: HTMLElement): void {
 
 function messageOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
+}
+
+function twoDigits(value: number | undefined): string {
+  return value === undefined ? "" : decimal(value, 2);
 }
 
 /** A page that slept does not leap. */

@@ -3,7 +3,7 @@ import { createEffect, createSignal, For, Match, on, onCleanup, Show, Switch, ty
 import { listSessions } from "../../api/http";
 import type { Session } from "../../api/types";
 import { words } from "../../i18n";
-import { dayAndTime, span } from "../../lib/format";
+import { dayAndTime, decimal, span } from "../../lib/format";
 import type { Live } from "../../live/live";
 
 /** The list. */
@@ -128,7 +128,7 @@ export function sizeOf(session: Session): string {
   const say = words().records.sessions;
   if (session.recording_removed_at !== null) return say.removed;
   if (session.recorded_frames === 0) return say.noRecording;
-  return session.recording_bytes < 1e6 ? say.kilobytes((session.recording_bytes / 1e3).toFixed(0)) : say.megabytes((session.recording_bytes / 1e6).toFixed(1));
+  return session.recording_bytes < 1e6 ? say.kilobytes(decimal(session.recording_bytes / 1e3, 0)) : say.megabytes(decimal(session.recording_bytes / 1e6, 1));
 }
 
 const PAGE = 50;
