@@ -10,6 +10,7 @@
 
 mod check;
 mod decode;
+mod direct;
 mod error;
 mod outgoing;
 mod pace;

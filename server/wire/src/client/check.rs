@@ -31,7 +31,8 @@ pub(super) fn check(message: &FromClient) -> Result<(), ClientError> {
     }
 }
 
-fn check_pose(pose: &HeadPose) -> Result<(), ClientError> {
+/// The same for a pose.
+pub(super) fn check_pose(pose: &HeadPose) -> Result<(), ClientError> {
     text("person", &pose.person)?;
     coordinates("position", &pose.position)?;
     let norm = pose.orientation.iter().map(|part| part * part).sum::<f64>().sqrt();

@@ -1,7 +1,8 @@
 //! From a frame to a message, or to an error that names the field. Never a panic, whatever the bytes.
 //!
 //! Bytes become a tree first, which settles syntax, repeated keys, depth and non-finite numbers for both encodings
-//! alike; the tree's `type` then says which message its other fields are read as.
+//! alike; the tree's `type` then says which message its other fields are read as. A good pose in JSON, which is nearly
+//! all that comes, needs no tree (`direct`).
 
 use std::fmt;
 use std::io::Cursor;
@@ -10,6 +11,7 @@ use serde::de::{self, Deserialize, DeserializeOwned, Deserializer, MapAccess, Se
 use serde_json::{Map, Value};
 
 use super::check::check;
+use super::direct;
 use super::{ClientError, Encoding, ErrorCode, FromClient, MAX_FRAME_BYTES, ToClient};
 
 /// Read one frame from a client.
@@ -22,6 +24,34 @@ pub fn decode(encoding: Encoding, frame: &[u8]) -> Result<FromClient, ClientErro
             format!("at most {MAX_FRAME_BYTES} bytes"),
         ));
     }
+    if encoding == Encoding::Json
+        && let Some(pose) = direct::pose(frame)
+    {
+        return Ok(FromClient::Pose(pose));
+    }
+    decode_by_tree(encoding, frame)
+}
+
+/// Read one frame from the server: for clients in Rust.
+pub fn decode_from_server(encoding: Encoding, frame: &[u8]) -> Result<ToClient, DecodeFailed> {
+    match encoding {
+        Encoding::Json => serde_json::from_slice(frame).map_err(|e| DecodeFailed(e.to_string())),
+        Encoding::MessagePack => rmp_serde::from_slice(frame).map_err(|e| DecodeFailed(e.to_string())),
+    }
+}
+
+/// A frame from the server that is no message of this protocol.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the server's frame cannot be read: {0}")]
+pub struct DecodeFailed(String);
+
+const MESSAGES: &str = "one of `hello`, `enter`, `leave`, `pose`, `origin_changed`, `touch_began`, `touch_ended`, \
+                        `scene_event`, `clock_ping`";
+
+/// A pose is 3 deep; a scene event's detail may be somewhat deeper. Bounds the stack that a hostile frame can take.
+const MOST_NESTED: usize = 64;
+
+fn decode_by_tree(encoding: Encoding, frame: &[u8]) -> Result<FromClient, ClientError> {
     let Value::Object(mut fields) = tree(encoding, frame)? else {
         return Err(ClientError::at(ErrorCode::WrongType, "", "another value", "an object with a `type`"));
     };
@@ -48,25 +78,6 @@ pub fn decode(encoding: Encoding, frame: &[u8]) -> Result<FromClient, ClientErro
     check(&message)?;
     Ok(message)
 }
-
-/// Read one frame from the server: for clients in Rust.
-pub fn decode_from_server(encoding: Encoding, frame: &[u8]) -> Result<ToClient, DecodeFailed> {
-    match encoding {
-        Encoding::Json => serde_json::from_slice(frame).map_err(|e| DecodeFailed(e.to_string())),
-        Encoding::MessagePack => rmp_serde::from_slice(frame).map_err(|e| DecodeFailed(e.to_string())),
-    }
-}
-
-/// A frame from the server that is no message of this protocol.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the server's frame cannot be read: {0}")]
-pub struct DecodeFailed(String);
-
-const MESSAGES: &str = "one of `hello`, `enter`, `leave`, `pose`, `origin_changed`, `touch_began`, `touch_ended`, \
-                        `scene_event`, `clock_ping`";
-
-/// A pose is 3 deep; a scene event's detail may be somewhat deeper. Bounds the stack that a hostile frame can take.
-const MOST_NESTED: usize = 64;
 
 fn read<M: DeserializeOwned>(fields: Map<String, Value>) -> Result<M, ClientError> {
     serde_path_to_error::deserialize(Value::Object(fields))
@@ -181,5 +192,73 @@ impl<'de> Visitor<'de> for TreeVisitor {
             map.insert(key, value);
         }
         Ok(Tree(Value::Object(map)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Values that a field of a pose may be given, good ones first.
+    fn value() -> impl Strategy<Value = String> {
+        prop_oneof![
+            Just("\"ada\"".to_owned()),
+            Just("\"pose\"".to_owned()),
+            Just("\"p\\u006fse\"".to_owned()),
+            any::<u32>().prop_map(|n| n.to_string()),
+            any::<i64>().prop_map(|n| n.to_string()),
+            any::<f64>().prop_map(|x| format!("{x:e}")),
+            Just("3.0".to_owned()),
+            Just("1e999".to_owned()),
+            Just("-0".to_owned()),
+            Just("18446744073709551615".to_owned()),
+            Just("true".to_owned()),
+            Just("null".to_owned()),
+            Just("{}".to_owned()),
+            Just("[0, 1.6, 0]".to_owned()),
+            Just("[0, 0, 0, 1]".to_owned()),
+            Just("[[0, 1, 2], null]".to_owned()),
+            Just("{\"left\": [1, 2, 3]}".to_owned()),
+            Just("{\"left\": [1, 2, 3], \"left\": null}".to_owned()),
+            Just("{\"pose\": null}".to_owned()),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_read_directly_is_what_the_tree_reads(
+            changed in prop::collection::vec((0_usize..9, value()), 0..3),
+            repeated in prop::option::of(0_usize..9),
+            left_out in prop::option::of(0_usize..9),
+            around in prop_oneof![
+                8 => Just(("{", "}")), 1 => Just((" {", "}\n")), 1 => Just(("[", "]")), 1 => Just(("{", "} {}")),
+            ],
+            order in Just((0..9).collect::<Vec<usize>>()).prop_shuffle(),
+        ) {
+            const NAMES: [&str; 9] = [
+                "type", "person", "sequence", "client_time_micros", "position", "orientation", "tracked", "worn", "hands",
+            ];
+            let mut values = [
+                "\"pose\"", "\"ada\"", "7", "-5", "[0.1, 1.7, -2]", "[0, 0.6, 0, 0.8]", "true", "false", "null",
+            ].map(str::to_owned);
+            for (field, value) in changed {
+                values[field] = value;
+            }
+            let fields: Vec<String> = order.into_iter().filter(|field| left_out != Some(*field)).chain(repeated)
+                .map(|field| format!("\"{}\": {}", NAMES[field], values[field])).collect();
+            let frame = format!("{}{}{}", around.0, fields.join(", "), around.1);
+            if let Some(pose) = direct::pose(frame.as_bytes()) {
+                prop_assert_eq!(decode_by_tree(Encoding::Json, frame.as_bytes()), Ok(FromClient::Pose(pose)), "{}", frame);
+            }
+        }
+    }
+
+    #[test]
+    fn a_good_pose_needs_no_tree() {
+        let frame = br#"{"type": "pose", "person": "ada", "sequence": 1, "client_time_micros": 2,
+            "position": [0, 1.7, 0], "orientation": [0, 0, 0, 1], "tracked": true, "worn": true}"#;
+        let pose = direct::pose(frame).unwrap();
+        assert_eq!(decode_by_tree(Encoding::Json, frame), Ok(FromClient::Pose(pose)));
     }
 }
