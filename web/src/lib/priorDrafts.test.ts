@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { edit, editsTo, overtaken, overwritten, readPrior, setBacksOf, settle, wanted } from "./priorDrafts";
+import type { PriorChange } from "../api/types";
+import { edit, editsTo, overtaken, overwritten, readPrior, setBacksOf, settle, undoable, wanted } from "./priorDrafts";
 
 describe("a typed prior", () => {
   it("is a number from 0 to 1, with a point or a comma", () => {
@@ -49,5 +50,34 @@ describe("setting back", () => {
     expect(overwritten(changes, { lamp: 0.7, door: 0.2 })).toEqual([]);
     expect(overwritten(changes, { lamp: 0.7, door: 0.9 })).toEqual([changes[1]]);
     expect(overwritten(changes, { door: 0.2 })).toEqual([changes[0]]);
+  });
+});
+
+describe("what can be undone", () => {
+  let second = 0;
+  const change = (author: string, object: string, from: number, to: number, at = `2026-01-01T00:00:${String(++second).padStart(2, "0")}Z`): PriorChange => ({
+    at, author, object, from, to, scene_id: 1, scene_version: 1,
+  });
+  const list = (...oldestFirst: PriorChange[]): PriorChange[] => oldestFirst.reverse();
+
+  it("are an author's applies, several priors at once being one", () => {
+    const changes = list(change("Ada", "lamp", 0.5, 0.7, "a"), change("Ada", "door", 1, 0, "a"), change("Bo", "door", 0, 0.3), change("Ada", "lamp", 0.7, 0.1));
+    const now = { lamp: 0.1, door: 0.3 };
+    expect(undoable(changes, "Ada", now)).toEqual([
+      [{ object: "door", from: 1, to: 0 }, { object: "lamp", from: 0.5, to: 0.7 }],
+      [{ object: "lamp", from: 0.7, to: 0.1 }],
+    ]);
+    expect(undoable(changes, "Cy", now)).toEqual([]);
+  });
+
+  it("is not what was set back already, nor the setting back", () => {
+    const changes = list(change("Ada", "lamp", 0.5, 0.7), change("Ada", "lamp", 0.7, 0.1), change("Ada", "lamp", 0.1, 0.7));
+    expect(undoable(changes, "Ada", { lamp: 0.7 })).toEqual([[{ object: "lamp", from: 0.5, to: 0.7 }]]);
+  });
+
+  it("ends where an activation set the priors anew", () => {
+    expect(undoable(list(change("Ada", "lamp", 0.5, 0.7)), "Ada", { lamp: 0.5 })).toEqual([]);
+    expect(undoable(list(change("Ada", "lamp", 0.5, 0.7), change("Ada", "lamp", 0.5, 0.9)), "Ada", { lamp: 0.9 })).toHaveLength(1);
+    expect(undoable(list(change("Ada", "lamp", 0.5, 0.7)), "Ada", { door: 1 })).toEqual([]);
   });
 });

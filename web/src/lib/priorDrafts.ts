@@ -104,7 +104,36 @@ export function overwritten(changes: readonly SetBack[], now: PriorsNow): readon
   });
 }
 
+/**
+ * What an author's applies changed and what was not set back since, oldest first, by the list of everybody's changes,
+ * newest first. The list is followed back as long as each change leads to what came after it, the last to what is in
+ * force: where it does not, the scene was activated anew, and what was before cannot be set back.
+ */
+export function undoable(changes: readonly PriorChange[], author: string, now: PriorsNow): readonly (readonly SetBack[])[] {
+  const known: Record<string, number> = { ...now };
+  const applies: { at: string; backs: SetBack[] }[] = [];
+  for (const { at, author: by, object, from, to } of changes) {
+    if (!samePrior(known[object] ?? NaN, to)) break;
+    known[object] = from;
+    if (by !== author) continue;
+    const newest = applies.at(-1);
+    if (newest?.at === at && newest.backs.every((back) => back.object !== object)) newest.backs.push({ object, from, to });
+    else applies.push({ at, backs: [{ object, from, to }] });
+  }
+  const standing: (readonly SetBack[])[] = [];
+  for (const { backs } of applies.reverse()) {
+    const before = standing.at(-1);
+    if (before !== undefined && undoes(backs, before)) standing.pop();
+    else standing.push(backs);
+  }
+  return standing;
+}
+
 /** Who changed an object last, by the list of changes, newest first. */
 export function lastChangeOf(changes: readonly PriorChange[], object: string): PriorChange | null {
   return changes.find((change) => change.object === object) ?? null;
+}
+
+function undoes(backs: readonly SetBack[], before: readonly SetBack[]): boolean {
+  return backs.length === before.length && backs.every(({ object, to }) => before.some((back) => back.object === object && samePrior(back.from, to)));
 }

@@ -115,6 +115,23 @@ it("applies by Enter, and undoes its own last apply by Ctrl+Z", async () => {
   });
 });
 
+it("undoes what was applied before the page was read again", async () => {
+  slide("bulb", 0.5);
+  fireEvent.click(screen.getByTestId("prior-apply"));
+  await vi.waitFor(() => {
+    expect(priorOf("bulb")).toBe(0.5);
+  });
+  cleanup();
+  render(() => <Priors live={desk.live} author="Grace" />);
+  await vi.waitFor(() => {
+    expect(screen.getByTestId("prior-undo").textContent).toContain("Light bulb 0.50 → 1.00");
+  });
+  fireEvent.click(screen.getByTestId("prior-undo"));
+  await vi.waitFor(() => {
+    expect(priorOf("bulb")).toBe(1);
+  });
+});
+
 it("asks before it undoes what somebody else has changed since", async () => {
   slide("bulb", 0.5);
   fireEvent.click(screen.getByTestId("prior-apply"));

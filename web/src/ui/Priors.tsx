@@ -6,14 +6,14 @@ import { createEffect, createMemo, createSignal, For, on, onCleanup, Show, type 
 import { changePriors, listPriorChanges, previewPriors } from "../api/http";
 import type { ObjectState, PriorChange, PriorPreview, SceneDocument } from "../api/types";
 import { words } from "../i18n";
+import { decimal } from "../lib/format";
 import { labelOf } from "../lib/labels";
-import { drop, edit, editsTo, lastChangeOf, overtaken, overwritten, setBacksOf, settle, wanted, type Drafts, type PriorsNow, type SetBack } from "../lib/priorDrafts";
+import { drop, edit, editsTo, lastChangeOf, overtaken, overwritten, setBacksOf, settle, undoable, wanted, type Drafts, type PriorsNow, type SetBack } from "../lib/priorDrafts";
 import type { Live } from "../live/live";
 import { Previewer, type PreviewState } from "../live/preview";
 import { PriorChanges } from "./PriorChanges";
 import { PriorPreviewWords } from "./PriorPreviewWords";
 import { PriorRow } from "./PriorRow";
-import { decimal } from "../lib/format";
 
 /** Where the column would go, for the picture. */
 export interface PriorGhost {
@@ -41,7 +41,8 @@ export function Priors(props: {
   const [landing, setLanding] = createSignal<PriorsNow>({});
   const [preview, setPreview] = createSignal<PreviewState>({ kind: "none" });
   const [changes, setChanges] = createSignal<readonly PriorChange[]>([]);
-  const [applies, setApplies] = createSignal<readonly (readonly SetBack[])[]>([]);
+  /** When the newest change of before the last activation was made. */
+  const [settledAt, setSettledAt] = createSignal("");
   const [said, say] = createSignal<{ readonly words: string; readonly server?: string; readonly bad: boolean } | null>(null);
   const [question, setQuestion] = createSignal<Question | null>(null);
   const [busy, setBusy] = createSignal(false);
@@ -59,6 +60,7 @@ export function Priors(props: {
     const sought = search().trim().toLowerCase();
     return objects().filter(({ id }) => sought === "" || id.toLowerCase().includes(sought) || label(id).toLowerCase().includes(sought));
   });
+  const applies = createMemo(() => undoable(changes().filter(({ at }) => at > settledAt()), props.author, inForce()));
   const taken = createMemo(() => overtaken(drafts(), inForce()));
   const pending = (): number => Object.keys(drafts()).length;
   const weightThen = createMemo((): ReadonlyMap<string, number> => new Map(previewed(preview())?.objects.map(({ id, weight }) => [id, weight]) ?? []));
@@ -100,7 +102,7 @@ export function Priors(props: {
     on(
       activation,
       () => {
-        setApplies([]);
+        setSettledAt(changes()[0]?.at ?? "");
         setQuestion(null);
       },
       { defer: true },
@@ -139,6 +141,7 @@ export function Priors(props: {
       clearTimeout(landed);
       landed = setTimeout(() => setLanding({}), SHOWN_WITHIN_MILLIS);
       say({ words: done, bad: false });
+      void readChanges();
       return true;
     } catch (error) {
       say({ words: text().notApplied, server: messageOf(error), bad: true });
@@ -151,7 +154,6 @@ export function Priors(props: {
     const applied = drafts();
     const backs = setBacksOf(applied, inForce());
     if (backs.length === 0 || !(await send(wanted(applied), text().applied(changeWords(backs))))) return;
-    setApplies((before) => [...before, backs]);
     setDrafts((before) => Object.keys(applied).reduce((left, id) => (before[id] === applied[id] ? drop(left, id) : left), before));
   };
   const apply = async (): Promise<void> => {
@@ -161,12 +163,12 @@ export function Priors(props: {
     setQuestion({ words: text().conflictApply(what), yes: applyNow });
   };
   /** Sets changes back, and asks first when something else has changed them since. */
-  const setBack = async (list: readonly SetBack[], after: () => void): Promise<void> => {
+  const setBack = async (list: readonly SetBack[]): Promise<void> => {
     const back = async (): Promise<void> => {
       const now = inForce();
       const known = list.filter(({ object }) => now[object] !== undefined);
       const done = known.map(({ object, from }) => ({ object, from: now[object] ?? from, to: from }));
-      if (await send(Object.fromEntries(known.map(({ object, from }) => [object, from])), text().setBackDone(changeWords(done)))) after();
+      await send(Object.fromEntries(known.map(({ object, from }) => [object, from])), text().setBackDone(changeWords(done)));
     };
     const lost = overwritten(list, inForce());
     if (lost.length === 0) return back();
@@ -179,7 +181,7 @@ export function Priors(props: {
   };
   const undo = async (): Promise<void> => {
     const last = applies().at(-1);
-    if (last !== undefined) await setBack(last, () => setApplies((before) => before.filter((entry) => entry !== last)));
+    if (last !== undefined) await setBack(last);
   };
   const undoes = (): string => changeWords((applies().at(-1) ?? []).map(({ object, from, to }) => ({ object, from: to, to: from })));
   const discard = (): void => {
@@ -283,7 +285,7 @@ export function Priors(props: {
         label={label}
         inForce={inForce()}
         frozen={frozen() !== null || busy()}
-        setBack={(change) => void setBack([change], () => undefined)}
+        setBack={(change) => void setBack([change])}
       />
     </section>
   );
