@@ -6,13 +6,16 @@ import type {
   ConfigInForce,
   PriorChange,
   PriorPreview,
+  ProblemDocument,
   RecordedFrame,
   SceneDocument,
   SceneError,
+  SceneStored,
   SceneSummary,
   SceneVersionSummary,
   Session,
   SessionDetail,
+  StopAcknowledged,
   WireEvent,
 } from "./types";
 
@@ -44,10 +47,10 @@ export async function postStop(
     cache: "no-store",
   });
   if (!response.ok) throw await problemOf(response);
-  const body = record(await response.json());
+  const body: Partial<Record<keyof StopAcknowledged, unknown>> = record(await response.json());
   return {
-    acknowledged: body["acknowledged"] === true,
-    to_drive_micros: typeof body["to_drive_micros"] === "number" ? body["to_drive_micros"] : null,
+    acknowledged: body.acknowledged === true,
+    to_drive_micros: typeof body.to_drive_micros === "number" ? body.to_drive_micros : null,
   };
 }
 
@@ -57,13 +60,13 @@ export async function listScenes(): Promise<readonly SceneSummary[]> {
 }
 
 /** `POST /api/v1/scenes`: the document as it was written, so that lines and columns in errors are the author's. */
-export async function uploadScene(text: string, author: string): Promise<{ id: number; version: number }> {
-  return (await call("POST", "/api/v1/scenes", { text, author })) as { id: number; version: number };
+export async function uploadScene(text: string, author: string): Promise<SceneStored> {
+  return (await call("POST", "/api/v1/scenes", { text, author })) as SceneStored;
 }
 
 /** `PUT /api/v1/scenes/{id}`: a new version of a scene. */
-export async function replaceScene(id: number, text: string, author: string): Promise<{ id: number; version: number }> {
-  return (await call("PUT", `/api/v1/scenes/${id}`, { text, author })) as { id: number; version: number };
+export async function replaceScene(id: number, text: string, author: string): Promise<SceneStored> {
+  return (await call("PUT", `/api/v1/scenes/${id}`, { text, author })) as SceneStored;
 }
 
 /** `POST /api/v1/scenes/check`: whether the server would store it. */
@@ -205,15 +208,15 @@ async function ask(method: string, path: string, body?: Body, giveUp?: AbortSign
 
 async function problemOf(response: Response): Promise<Problem> {
   const fallback = `${response.status} ${response.statusText}`.trim();
-  let body: Record<string, unknown>;
+  let body: Partial<Record<keyof ProblemDocument, unknown>>;
   try {
     body = record(await response.json());
   } catch {
     return new Problem(response.status, fallback, fallback, []);
   }
-  const title = typeof body["title"] === "string" ? body["title"] : fallback;
-  const detail = typeof body["detail"] === "string" ? body["detail"] : title;
-  const errors = Array.isArray(body["errors"]) ? body["errors"].map(sceneErrorOf) : [];
+  const title = typeof body.title === "string" ? body.title : fallback;
+  const detail = typeof body.detail === "string" ? body.detail : title;
+  const errors = Array.isArray(body.errors) ? body.errors.map(sceneErrorOf) : [];
   return new Problem(response.status, title, detail, errors);
 }
 

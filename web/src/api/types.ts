@@ -1,5 +1,5 @@
-/** The wire's types under one roof. They are generated from the server's sources; nothing here is written by hand
- * but the answer of the priors' preview. */
+/** The wire's types under one roof. They are generated from the server's sources; nothing here is written by hand:
+ * `generated` is what the sockets and the store carry, `answers` what HTTP alone answers. */
 export type {
   Activity,
   Client,
@@ -39,15 +39,8 @@ export type {
   Threshold,
   ToDashboard,
 } from "./generated";
-
-/** The answer of `POST /api/v1/priors/preview`, room frame, m. */
-export interface PriorPreview {
-  /** Where the column would be wanted; null when nobody would be served. */
-  readonly target_m: readonly [number, number] | null;
-  /** Id of the person who would be served. */
-  readonly serves: number | null;
-  /** Id of the object that the rule would be committed to. */
-  readonly committed: string | null;
-  readonly planned_path_m: readonly (readonly [number, number])[];
-  readonly objects: readonly { readonly id: string; readonly weight: number; readonly probability: number; readonly prior: number }[];
-}
+export type { Answered } from "./answers/Answered";
+export type { Problem as ProblemDocument } from "./answers/Problem";
+export type { PriorsPreview as PriorPreview } from "./answers/PriorsPreview";
+export type { SceneStored } from "./answers/SceneStored";
+export type { StopAcknowledged } from "./answers/StopAcknowledged";

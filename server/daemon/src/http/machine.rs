@@ -13,6 +13,7 @@ use covr_engine::mode::RequestKind;
 use covr_engine::observation::PersonId;
 use covr_engine::{Answer, Outcome};
 use serde::{Deserialize, Serialize};
+use ts_rs::TS;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -23,7 +24,7 @@ use crate::app::{App, Asker};
 use crate::control::StopLaneName;
 
 /// What came of a request.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema, TS)]
 pub struct Answered {
     /// `accepted` or `already_so`; a refusal is a problem.
     pub outcome: String,
@@ -32,7 +33,7 @@ pub struct Answered {
 }
 
 /// The stop reached the drive.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema, TS)]
 pub struct StopAcknowledged {
     /// Always true: without an acknowledgement there is a problem instead.
     pub acknowledged: bool,

@@ -10,6 +10,7 @@ use covr_engine::frames::Floor;
 use covr_wire::answers::PriorChange;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use ts_rs::TS;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -28,7 +29,7 @@ pub struct PriorsChanged {
 }
 
 /// What other priors would do now.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema, TS)]
 #[schema(example = json!({
     "target_m": [1.2, 3.4], "serves": 1, "committed": "lamp", "planned_path_m": [[2.0, 2.0], [1.95, 2.08]],
     "objects": [{ "id": "lamp", "weight": 0.36, "probability": 0.8, "prior": 0.4 },
@@ -48,7 +49,7 @@ pub struct PriorsPreview {
 }
 
 /// An object under other priors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema, TS)]
 pub struct ObjectPreview {
     /// The scene's id of the object.
     pub id: String,

@@ -7,13 +7,14 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
+use ts_rs::TS;
 use utoipa::ToSchema;
 
 use crate::control::NotDelivered;
 use crate::store::StoreError;
 
 /// A refusal or a failure, `application/problem+json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema, TS)]
 pub struct Problem {
     /// What kind of problem, as a URN that stays.
     #[serde(rename = "type")]
@@ -29,11 +30,12 @@ pub struct Problem {
     pub instance: Box<str>,
     /// What is wrong, place by place.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[ts(optional, as = "Option<Vec<ProblemItem>>")]
     pub errors: Vec<ProblemItem>,
 }
 
 /// One thing that is wrong.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema, TS)]
 pub struct ProblemItem {
     /// Where in the document: `objects[2].position`; empty for the document itself.
     pub path: String,

@@ -11,6 +11,7 @@ use covr_wire::answers::{SceneSummary, SceneVersionSummary};
 use covr_wire::scene::{SceneError, parse_scene, scene_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use ts_rs::TS;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -21,7 +22,7 @@ use crate::app::App;
 use crate::stage::ActivationRefused;
 
 /// Where a scene was stored.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema, TS)]
 pub struct SceneStored {
     /// The store's number of the scene.
     pub id: i64,
