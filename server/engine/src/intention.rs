@@ -2,14 +2,17 @@
 //!
 //! A rule sees distances, angles and priors of one visitor; it never sees the column, and it moves nothing.
 
+mod bayes;
 mod gaze;
 mod nearest;
 mod paper;
 mod velocity;
 
 use crate::frames::{Floor, Planar, Pose, Room};
+use crate::motion::standing::StandingName;
 use crate::scene::Scene;
 use crate::time::Time;
+pub use bayes::BayesParameters;
 pub use paper::PaperParameters;
 
 /// One object as the visitor has it.
@@ -21,6 +24,8 @@ pub struct Sight {
     pub angle_rad: f64,
     /// From the head axis to the object's place, over the floor, m.
     pub offset: Planar,
+    /// From the head up to the object's place, m.
+    pub rise_m: f64,
     /// The scenario prior P, 0 to 1.
     pub prior: f64,
     /// It can be served now.
@@ -47,6 +52,8 @@ pub struct Belief {
     pub weights: Vec<f64>,
     /// The share of each object in the command position; sums to 1, or all 0 when nothing can be served.
     pub shares: Vec<f64>,
+    /// Of "none of them", where a rule knows it; else 0.
+    pub none: f64,
     /// The object that the rule is committed to.
     pub committed: Option<usize>,
 }
@@ -84,6 +91,8 @@ pub enum RuleName {
     Gaze,
     /// The nearest to where the head will be if it goes on as it does.
     ConstantVelocity,
+    /// A recursive Bayesian filter over the objects and none of them.
+    Bayes,
 }
 
 /// The numbers of the rules.
@@ -91,11 +100,13 @@ pub enum RuleName {
 pub struct IntentionParameters {
     /// Of the paper's rule, in all its readings.
     pub paper: PaperParameters,
+    /// Of the Bayesian filter.
+    pub bayes: BayesParameters,
 }
 
 impl RuleName {
     /// Every rule.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Paper,
         Self::PaperLiteral,
         Self::PaperBest,
@@ -103,6 +114,7 @@ impl RuleName {
         Self::Nearest,
         Self::Gaze,
         Self::ConstantVelocity,
+        Self::Bayes,
     ];
 
     /// Its name in configuration, tables and JSON.
@@ -115,12 +127,21 @@ impl RuleName {
             Self::Nearest => "nearest",
             Self::Gaze => "gaze",
             Self::ConstantVelocity => "constant-velocity",
+            Self::Bayes => "bayes",
         }
     }
 
     /// The rule of this name.
     pub fn parse(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|rule| rule.name() == name)
+    }
+
+    /// Where the column stands by what this rule believes, unless something else is asked: the paper's rules name a mean.
+    pub const fn standing(self) -> StandingName {
+        match self {
+            Self::Bayes => StandingName::InTime,
+            _ => StandingName::Mean,
+        }
     }
 
     /// A fresh rule for one visitor.
@@ -134,6 +155,7 @@ impl RuleName {
             Self::Nearest => Box::new(nearest::Nearest),
             Self::Gaze => Box::new(gaze::Gaze),
             Self::ConstantVelocity => Box::new(velocity::ConstantVelocity),
+            Self::Bayes => Box::new(bayes::Bayes::new(parameters.bayes)),
         }
     }
 }
@@ -146,11 +168,29 @@ pub fn sights(scene: &Scene, priors: &[f64], head: &Pose<Room>, out: &mut Vec<Si
             distance_m: object.distance_m(&head.position),
             angle_rad: object.angle_rad(head),
             offset: spec.position.floor() - head.position.floor(),
+            rise_m: spec.position.z() - head.position.z(),
             prior: *prior,
             enabled: spec.enabled,
         },
     ));
 }
+
+/// When a hand could be at an object, s from now: the way left at the pace kept, and a start if the visitor stands.
+/// Medians of recorded reaches.
+pub fn touch_secs(sight: &Sight, velocity: Planar) -> f64 {
+    let closing = sight.offset.unit().map_or(0.0, |way| velocity.dot(way));
+    let onset = STARTS_AFTER_SECS * (1.0 - closing / UNDER_WAY_MPS).clamp(0.0, 1.0);
+    (sight.offset.norm() - ARM_M).max(0.0) / closing.max(PACE_MPS) + onset
+}
+
+/// The head is this far from an object, over the floor, when the hand is at it, m.
+const ARM_M: f64 = 0.65;
+/// A reach is no slower than this, m/s.
+const PACE_MPS: f64 = 0.55;
+/// Somebody who stands starts after so long, s.
+const STARTS_AFTER_SECS: f64 = 1.2;
+/// Somebody who comes nearer so fast is under way, m/s.
+const UNDER_WAY_MPS: f64 = 0.2;
 
 /// The command position (eq. 1): the mean of the objects' column places by their shares; none without any share.
 pub fn command_position(scene: &Scene, belief: &Belief) -> Option<Floor> {
@@ -166,15 +206,20 @@ pub fn command_position(scene: &Scene, belief: &Belief) -> Option<Floor> {
 impl Belief {
     /// The sum of the weights, which a probability is a share of.
     pub fn total(&self) -> f64 {
-        self.weights.iter().sum()
+        self.weights.iter().sum::<f64>() + self.none
+    }
+
+    /// The object of the greatest weight, among equals the first of the scene; none without any weight.
+    pub fn best(&self) -> Option<usize> {
+        let best = (0..self.weights.len()).rev().max_by(|a, b| self.weights[*a].total_cmp(&self.weights[*b]));
+        best.filter(|i| self.weights[*i] > 0.0)
     }
 
     /// Commit to the object of the greatest weight alone, among equals to the first of the scene; to none without any
     /// weight.
     fn commit_to_best(&mut self) {
+        self.committed = self.best();
         let count = self.weights.len();
-        let best = (0..count).rev().max_by(|a, b| self.weights[*a].total_cmp(&self.weights[*b]));
-        self.committed = best.filter(|i| self.weights[*i] > 0.0);
         let committed = self.committed;
         self.share_by(count, |i| if committed == Some(i) { 1.0 } else { 0.0 });
     }
@@ -211,7 +256,7 @@ mod tests {
     pub(super) fn sight(distance_m: f64, angle_deg: f64, prior: f64) -> Sight {
         let angle_rad = f64::to_radians(angle_deg);
         let offset = Planar::new(distance_m, 0.0).turned(angle_rad);
-        Sight { distance_m, angle_rad, offset, prior, enabled: true }
+        Sight { distance_m, angle_rad, offset, rise_m: 0.0, prior, enabled: true }
     }
 
     fn sights(count: usize) -> impl Strategy<Value = Vec<Sight>> {
@@ -220,6 +265,7 @@ mod tests {
             distance_m,
             angle_rad,
             offset: Planar::new(distance_m, 0.0).turned(angle_rad),
+            rise_m: 0.0,
             prior,
             enabled,
         });

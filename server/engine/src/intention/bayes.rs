@@ -1,0 +1,274 @@
+//! `bayes`: a recursive Bayesian filter over the objects and "none of them".
+//!
+//! A hidden Markov model: the visitor means one object, or none, and changes their mind now and then. Each pose is
+//! evidence by where the head looks (and is turning to), where it walks, and how near it is:
+//!
+//! ```text
+//! p_i(t) ~ [ e^(-dt/tau) p_i(t-dt) + (1 - e^(-dt/tau)) P_i ] * exp(dt * l_i)
+//! l_i = - g(speed) min(gaze_i, c_g)  -  m(speed) [ w min(way_i, c_w) + n d_i ]
+//! ```
+//!
+//! P is the scenario prior and nothing else; a prior that changes reweighs the belief at once. Evidence is counted a
+//! second, not a pose, as poses that follow one another say the same. It falls with the angle itself: on recorded reaches
+//! that told neighbours apart earlier than bells about the angle did. It is capped (c): people glance away.
+
+use nalgebra::{UnitVector3, Vector3};
+
+use super::{Belief, Rule, Sight, View};
+use crate::time::Time;
+
+/// The numbers of the filter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BayesParameters {
+    /// g of somebody who stands, 1/(s rad).
+    pub gaze_rate_standing: f64,
+    /// g of somebody who walks, 1/(s rad).
+    pub gaze_rate_walking: f64,
+    /// c_g: a look farther off says no more, rad.
+    pub gaze_cap_rad: f64,
+    /// The head is taken to where it turns in this time, s.
+    pub gaze_lead_secs: f64,
+    /// w of somebody who walks, 1/(s rad).
+    pub way_rate: f64,
+    /// c_w: a way farther off says no more, rad.
+    pub way_cap_rad: f64,
+    /// n of somebody who walks, 1/(s m).
+    pub nearness_rate: f64,
+    /// From this speed on somebody walks in full, m/s.
+    pub walking_mps: f64,
+    /// tau: for so long a mind is made up, s.
+    pub mind_secs: f64,
+    /// The prior of "none of them", against 1 for all objects together.
+    pub none_prior: f64,
+    /// "None of them" looks and walks this far off its goal, rad.
+    pub none_angle_rad: f64,
+}
+
+impl Default for BayesParameters {
+    fn default() -> Self {
+        Self {
+            gaze_rate_standing: 0.8,
+            gaze_rate_walking: 15.0,
+            gaze_cap_rad: 2.5,
+            gaze_lead_secs: 0.2,
+            way_rate: 14.0,
+            way_cap_rad: 1.45,
+            nearness_rate: 0.09,
+            walking_mps: 0.8,
+            mind_secs: 42.0,
+            none_prior: 0.02,
+            none_angle_rad: 0.9,
+        }
+    }
+}
+
+/// The filter of one visitor.
+#[derive(Debug, Clone)]
+pub struct Bayes {
+    parameters: BayesParameters,
+    /// Of each object, and of none at the end; sums to 1.
+    probabilities: Vec<f64>,
+    /// What they are priors of.
+    priors: Vec<f64>,
+    seen: Option<Seen>,
+}
+
+/// The last pose.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    at: Time,
+    view: Vector3<f64>,
+    /// How the view axis turns, smoothed, 1/s.
+    turning: Vector3<f64>,
+}
+
+impl Bayes {
+    /// Nothing seen yet.
+    pub const fn new(parameters: BayesParameters) -> Self {
+        Self { parameters, probabilities: Vec::new(), priors: Vec::new(), seen: None }
+    }
+
+    /// Bring the priors in: as they are at first, by reweighing later.
+    fn take_priors(&mut self, sights: &[Sight]) {
+        let own = |s: &Sight| if s.enabled { s.prior } else { 0.0 };
+        let total: f64 = sights.iter().map(own).sum();
+        let scale = if total > 0.0 { 1.0 / (total * (1.0 + self.parameters.none_prior)) } else { 0.0 };
+        let none = 1.0 - total * scale;
+        let priors = sights.iter().map(|s| own(s) * scale).chain([none]);
+        if self.probabilities.len() != sights.len() + 1 {
+            self.priors.clear();
+            self.priors.extend(priors);
+            self.probabilities.clone_from(&self.priors);
+            self.seen = None;
+            return;
+        }
+        let mut changed = false;
+        for ((probability, before), now) in self.probabilities.iter_mut().zip(&mut self.priors).zip(priors) {
+            if *before != now {
+                // What could not be meant before has no evidence of its own yet.
+                *probability = if *before > 0.0 { *probability * now / *before } else { now };
+                *before = now;
+                changed = true;
+            }
+        }
+        if changed {
+            normalise(&mut self.probabilities, &self.priors);
+        }
+    }
+
+    /// Where the head looks, and will look in a moment.
+    fn look(&self, view: &View<'_>) -> (Seen, f64, UnitVector3<f64>) {
+        let now = view.head.view();
+        let Some(before) = self.seen else {
+            let seen = Seen { at: view.taken_at, view: now, turning: Vector3::zeros() };
+            return (seen, 0.0, UnitVector3::new_normalize(now));
+        };
+        let dt = (view.taken_at - before.at).secs().clamp(0.0, LONGEST_SECS);
+        let mut turning = before.turning;
+        if dt > 0.0 {
+            let blend = 1.0 - (-dt / TURNING_SMOOTHING_SECS).exp();
+            turning += ((now - before.view) / dt - turning) * blend;
+        }
+        let ahead = UnitVector3::new_normalize(now + turning * self.parameters.gaze_lead_secs);
+        (Seen { at: view.taken_at, view: now, turning }, dt, ahead)
+    }
+}
+
+impl Rule for Bayes {
+    fn boxed(&self) -> Box<dyn Rule> {
+        Box::new(self.clone())
+    }
+
+    fn weigh(&mut self, view: &View<'_>, belief: &mut Belief) {
+        self.take_priors(view.sights);
+        let (seen, dt, ahead) = self.look(view);
+        if dt > 0.0 {
+            let p = self.parameters;
+            let speed = view.velocity.norm();
+            let walks = (speed / p.walking_mps).min(1.0);
+            let gaze_rate = p.gaze_rate_standing + (p.gaze_rate_walking - p.gaze_rate_standing) * walks;
+            let evidence_of = |gaze: f64, way: f64| {
+                -gaze_rate * gaze.min(p.gaze_cap_rad) - walks * p.way_rate * way.min(p.way_cap_rad)
+            };
+            let stay = (-dt / p.mind_secs).exp();
+            for (i, probability) in self.probabilities.iter_mut().enumerate() {
+                let evidence = if let Some(sight) = view.sights.get(i) {
+                    let towards = Vector3::new(sight.offset.x, sight.offset.y, sight.rise_m);
+                    let gaze = angle(towards.dot(&ahead), towards.norm());
+                    let way = angle(view.velocity.dot(sight.offset), speed * sight.offset.norm());
+                    evidence_of(gaze, way) - walks * p.nearness_rate * sight.distance_m
+                } else {
+                    evidence_of(p.none_angle_rad, p.none_angle_rad)
+                };
+                let stayed = stay * *probability + (1.0 - stay) * self.priors[i];
+                *probability = stayed * (dt * evidence).exp();
+            }
+            normalise(&mut self.probabilities, &self.priors);
+        }
+        self.seen = Some(seen);
+        let count = view.sights.len();
+        belief.weights.clear();
+        belief.weights.extend_from_slice(&self.probabilities[..count]);
+        belief.none = self.probabilities[count];
+        belief.committed = belief.best().filter(|i| belief.weights[*i] > COMMITTED_FROM);
+        let weights = std::mem::take(&mut belief.weights);
+        belief.share_by(count, |i| weights[i]);
+        belief.weights = weights;
+    }
+}
+
+/// The angle of a scalar product, rad; 0 where there is no direction: what is here is looked at.
+fn angle(product: f64, lengths: f64) -> f64 {
+    if lengths > 1e-9 { (product / lengths).clamp(-1.0, 1.0).acos() } else { 0.0 }
+}
+
+/// Scale to a sum of 1; back to the priors when nothing is left.
+fn normalise(probabilities: &mut [f64], priors: &[f64]) {
+    let total: f64 = probabilities.iter().sum();
+    if total > f64::MIN_POSITIVE && total.is_finite() {
+        probabilities.iter_mut().for_each(|p| *p /= total);
+    } else {
+        probabilities.copy_from_slice(priors);
+    }
+}
+
+/// The visitor is taken to mean what is more probable than all else together.
+const COMMITTED_FROM: f64 = 0.5;
+/// One pose is evidence of no longer than this, s.
+const LONGEST_SECS: f64 = 0.1;
+/// A turn of the head shows after about this long, s.
+const TURNING_SMOOTHING_SECS: f64 = 0.08;
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{sight, view};
+    use super::*;
+    use crate::frames::Planar;
+
+    fn rule() -> Bayes {
+        Bayes::new(BayesParameters::default())
+    }
+
+    /// A second of poses of somebody who stands or walks along the view axis.
+    fn watched(rule: &mut Bayes, from_millis: i64, sights: &[Sight], speed_mps: f64) -> Belief {
+        let mut belief = Belief::default();
+        for k in 0..=75 {
+            let velocity = Planar::new(speed_mps, 0.0);
+            rule.weigh(&View { velocity, ..view(from_millis + k * 1000 / 75, sights) }, &mut belief);
+        }
+        belief
+    }
+
+    #[test]
+    fn it_is_a_distribution_over_the_objects_and_none() {
+        let off = Sight { enabled: false, ..sight(0.5, 0.0, 1.0) };
+        let belief = watched(&mut rule(), 0, &[sight(1.5, 0.0, 1.0), sight(1.5, 40.0, 0.5), off], 0.7);
+        assert!((belief.total() - 1.0).abs() < 1e-9 && belief.none > 0.0, "{belief:?}");
+        assert_eq!(belief.weights[2], 0.0, "what is not enabled is not meant");
+    }
+
+    #[test]
+    fn looks_and_steps_tell_neighbours_apart_and_steps_the_sooner() {
+        let neighbours = [sight(1.5, 0.0, 1.0), sight(1.5, 15.0, 1.0)];
+        let stands = watched(&mut rule(), 0, &neighbours, 0.0);
+        let walks = watched(&mut rule(), 0, &neighbours, 0.8);
+        assert!(stands.weights[0] > 0.52 && walks.weights[0] > 0.98, "{stands:?} {walks:?}");
+        assert_eq!(walks.committed, Some(0));
+    }
+
+    #[test]
+    fn people_change_their_minds() {
+        let mut rule = rule();
+        watched(&mut rule, 0, &[sight(1.5, 0.0, 1.0), sight(1.5, 90.0, 1.0)], 0.8);
+        let turned = watched(&mut rule, 1_013, &[sight(1.5, 90.0, 1.0), sight(1.5, 0.0, 1.0)], 0.8);
+        assert!(turned.weights[1] > 0.9, "{turned:?}");
+    }
+
+    #[test]
+    fn a_prior_that_changes_reweighs_the_belief_at_once_and_comes_back() {
+        let mut rule = rule();
+        let with = |a: f64, b: f64| [sight(1.5, 20.0, a), sight(1.5, 20.0, b)];
+        watched(&mut rule, 0, &with(1.0, 1.0), 0.0);
+        let mut belief = Belief::default();
+        rule.weigh(&view(1000, &with(1.0, 0.25)), &mut belief);
+        assert!((belief.weights[0] / belief.weights[1] - 4.0).abs() < 0.05, "{belief:?}");
+        rule.weigh(&view(1000, &with(1.0, 1.0)), &mut belief);
+        assert!((belief.weights[0] / belief.weights[1] - 1.0).abs() < 0.05, "{belief:?}");
+        rule.weigh(&view(1000, &with(0.0, 1.0)), &mut belief);
+        assert_eq!((belief.weights[0], belief.committed), (0.0, Some(1)), "{belief:?}");
+    }
+
+    #[test]
+    fn somebody_who_walks_away_from_everything_means_none() {
+        let behind = [sight(1.5, 150.0, 1.0), sight(1.5, 170.0, 1.0)];
+        let belief = watched(&mut rule(), 0, &behind, 0.8);
+        assert!(belief.none > 0.9 && belief.committed.is_none(), "{belief:?}");
+    }
+
+    #[test]
+    fn without_any_prior_there_is_nothing_to_mean() {
+        let belief = watched(&mut rule(), 0, &[sight(1.5, 0.0, 0.0)], 0.5);
+        assert_eq!((belief.weights[0], belief.none), (0.0, 1.0));
+        assert_eq!(belief.shares, [0.0]);
+    }
+}
