@@ -36,6 +36,7 @@ fn the_column_is_there_before_the_hand_in_at_least_half_of_the_reaches() {
         intention_rule: RuleName::PaperBest,
         intention: IntentionParameters::default(),
         motion: MotionName::Proxy,
+        standing: None,
         kept_from: KeptFrom::Everybody,
         v_h_mps: 1.6,
         latched_because: None,

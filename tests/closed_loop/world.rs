@@ -65,6 +65,7 @@ impl World {
             intention_rule: RuleName::ALL[random.below(RuleName::ALL.len())],
             intention: IntentionParameters::default(),
             motion: MotionName::ALL[random.below(MotionName::ALL.len())],
+            standing: None,
             kept_from: KeptFrom::Everybody,
             v_h_mps,
             latched_because: None,

@@ -14,6 +14,8 @@ use std::path::PathBuf;
 use covr_engine::frames::Floor;
 use covr_engine::intention::RuleName;
 use covr_engine::machine::{AxisLimits, Limits, Travel};
+use covr_engine::motion::MotionName;
+use covr_engine::motion::standing::StandingName;
 use covr_wire::dashboard::LinkThresholds;
 
 pub use intention::ParametersRefused;
@@ -103,6 +105,10 @@ pub struct People {
     pub intention_rule: RuleName,
     /// A file of parameters for it, as `covr fit` writes them; none: those by default.
     pub intention_parameters: Option<PathBuf>,
+    /// Where the column stands while it is not plain what will be touched; none: as the rule has it.
+    pub standing: Option<StandingName>,
+    /// How the column is moved.
+    pub motion: MotionName,
     /// v_h of the separation rule, m/s.
     pub v_h_mps: f64,
 }
@@ -188,7 +194,13 @@ impl Default for Config {
                 x: AxisLimits::PAPER,
                 y: AxisLimits::PAPER,
             },
-            people: People { intention_rule: RuleName::PaperBest, intention_parameters: None, v_h_mps: 1.6 },
+            people: People {
+                intention_rule: RuleName::Bayes,
+                intention_parameters: None,
+                standing: None,
+                motion: MotionName::Planner,
+                v_h_mps: 1.6,
+            },
             recording: Recording { enabled: true, keep_days: 365, keep_megabytes: 20_000 },
             clients: Clients {
                 most: 8,

@@ -123,7 +123,7 @@ pub fn run(options: &Evaluate) -> anyhow::Result<String> {
 }
 
 fn plan(options: &Evaluate) -> Plan {
-    let default_rule = Config::default().people.intention_rule;
+    let people = Config::default().people;
     Plan {
         rules: if options.rules.is_empty() { RuleChoice::all() } else { options.rules.clone() },
         motions: options.motion.clone(),
@@ -138,7 +138,7 @@ fn plan(options: &Evaluate) -> Plan {
         conditions: conditions(options),
         blames: options.blame,
         threads: options.threads,
-        ..Plan::new(default_rule, DEFAULT_MOTION)
+        ..Plan::new(people.intention_rule, people.motion)
     }
 }
 
@@ -171,6 +171,3 @@ fn within(what: &'static str, text: &str, least: f64, most: f64) -> Result<f64, 
     let problem = || PlanProblem { what, found: text.into(), expected };
     text.parse().ok().filter(|value| (least..=most).contains(value)).ok_or_else(problem)
 }
-
-/// How the server moves the column when nothing is configured.
-pub(crate) const DEFAULT_MOTION: MotionName = MotionName::Proxy;

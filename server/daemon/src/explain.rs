@@ -10,7 +10,7 @@ use covr_study::evaluate::{
 };
 
 use crate::config::Config;
-use crate::evaluate::{DEFAULT_MOTION, walking_speed};
+use crate::evaluate::walking_speed;
 
 /// Say what happened in one trial: what the rule believed, where the column was, and why it was late if it was.
 #[derive(Debug, Clone, Args)]
@@ -52,17 +52,17 @@ pub struct Explain {
 /// The words; the picture is written on the way.
 pub fn run(options: &Explain) -> anyhow::Result<String> {
     let subjects = Subjects::read(&options.paths)?;
-    let default_rule = Config::default().people.intention_rule;
+    let people = Config::default().people;
     let plan = Plan {
-        rules: vec![options.rule.unwrap_or(RuleChoice::Rule(default_rule))],
-        motions: vec![options.motion.unwrap_or(DEFAULT_MOTION)],
+        rules: vec![options.rule.unwrap_or(RuleChoice::Rule(people.intention_rule))],
+        motions: vec![options.motion.unwrap_or(people.motion)],
         separations: vec![options.separation],
         objects: vec![options.objects],
         priors: vec![options.prior],
         draws: vec![options.draw],
         v_h_mps: options.v_h,
         machine: options.machine,
-        ..Plan::new(default_rule, DEFAULT_MOTION)
+        ..Plan::new(people.intention_rule, people.motion)
     };
     let explanation = explain(&subjects, &plan, &options.trial)?;
     if let Some(file) = &options.svg {

@@ -9,7 +9,6 @@ use anyhow::{Context, bail, ensure};
 use axum::serve::ListenerExt;
 use covr_engine::frames::Floor;
 use covr_engine::mode::{Mode, RequestKind};
-use covr_engine::motion::MotionName;
 use covr_engine::safety::separation::KeptFrom;
 use covr_engine::time::Span;
 use covr_engine::{Engine, EngineConfig, Request};
@@ -105,7 +104,8 @@ impl Server {
             period: Span::from_secs(period.as_secs_f64()),
             intention_rule: config.people.intention_rule,
             intention,
-            motion: MotionName::Proxy,
+            motion: config.people.motion,
+            standing: config.people.standing,
             kept_from: KeptFrom::Everybody,
             v_h_mps: config.people.v_h_mps,
             latched_because: left_over.latched_because,

@@ -15,6 +15,7 @@ use crate::intention::{IntentionParameters, RuleName};
 use crate::machine::{Drive, Homing, Limits, MachineReport, Travel};
 use crate::mode::Mode;
 use crate::motion::MotionName;
+use crate::motion::standing::StandingName;
 use crate::observation::{Observation, PersonId};
 use crate::person::Person;
 use crate::safety::governor::Governor;
@@ -45,6 +46,8 @@ pub struct EngineConfig {
     pub intention: IntentionParameters,
     /// How the column is moved to where it is wanted.
     pub motion: MotionName,
+    /// Where the column stands while it is not known which object will be touched; none: as the rule has it.
+    pub standing: Option<StandingName>,
     /// Whom separation keeps the column from: everybody, but in a study on virtual time.
     pub kept_from: KeptFrom,
     /// v_h of the separation rule, m/s.
@@ -102,7 +105,12 @@ impl Engine {
             rests_since: None,
             supervisor: Supervisor::new(parameters),
             governor: None,
-            following: Following::new(config.intention_rule, &config.intention, config.motion),
+            following: Following::new(
+                config.intention_rule,
+                &config.intention,
+                config.motion,
+                config.standing.unwrap_or(config.intention_rule.standing()),
+            ),
             events: Vec::new(),
             pending: Vec::new(),
             scene,
@@ -156,7 +164,14 @@ impl Engine {
         self.supervise(now);
         self.progress_homing(now);
         let config = &self.config;
-        let wish = self.following.wanted(&self.persons, &self.scene, &self.priors, now, &self.parameters);
+        let wish = self.following.wanted(
+            &self.persons,
+            &self.scene,
+            &self.priors,
+            now,
+            &self.parameters,
+            &config.limits,
+        );
         let command = match self.mode {
             Mode::Disarmed | Mode::LatchedStop | Mode::Faulted => self.stop_and_release(now),
             Mode::Homing if self.may_home() => Vetted::home(now),

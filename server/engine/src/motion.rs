@@ -2,7 +2,10 @@
 //!
 //! It proposes velocities, best first. It never makes a command: safety takes the first proposal that it can allow.
 
+pub mod foresight;
+pub mod planner;
 pub mod proxy;
+pub mod standing;
 pub mod way;
 
 use crate::frames::{Floor, Planar};
@@ -14,16 +17,19 @@ use crate::safety::separation::Threat;
 pub enum MotionName {
     /// The paper's spring, damper and cone.
     Proxy,
+    /// The quickest way found by driving ahead.
+    Planner,
 }
 
 impl MotionName {
     /// Every motion.
-    pub const ALL: [Self; 1] = [Self::Proxy];
+    pub const ALL: [Self; 2] = [Self::Proxy, Self::Planner];
 
     /// Its name in configuration, tables and JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Proxy => "proxy",
+            Self::Planner => "planner",
         }
     }
 

@@ -111,6 +111,7 @@ impl Workload {
             intention_rule: RuleName::PaperBest,
             intention: IntentionParameters::default(),
             motion: MotionName::Proxy,
+            standing: None,
             kept_from: KeptFrom::Everybody,
             v_h_mps: 1.6,
             latched_because: None,

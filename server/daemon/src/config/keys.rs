@@ -8,6 +8,8 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use covr_engine::intention::RuleName;
+use covr_engine::motion::MotionName;
+use covr_engine::motion::standing::StandingName;
 use toml::Value;
 
 pub use links::out_of_order;
@@ -41,6 +43,8 @@ enum Place {
     Rectangle(fn(&mut Config) -> &mut [f64; 4]),
     Point(fn(&mut Config) -> &mut [f64; 3]),
     Rule(fn(&mut Config) -> &mut RuleName),
+    Motion(fn(&mut Config) -> &mut MotionName),
+    Standing(fn(&mut Config) -> &mut Option<StandingName>),
     Machine(fn(&mut Config) -> &mut MachineKind),
     LogFormat(fn(&mut Config) -> &mut LogFormat),
 }
@@ -156,6 +160,16 @@ pub fn all() -> Vec<Key> {
             Place::PathOrNone(|c| &mut c.people.intention_parameters),
         ),
         Key::new(
+            "people.standing",
+            "Where the column stands while it is not plain what will be touched: the weighted mean, or where it will most likely be in time. \"rule\": as the intention rule has it.",
+            Place::Standing(|c| &mut c.people.standing),
+        ),
+        Key::new(
+            "people.motion",
+            "How the column is moved: the planner's quickest way, or the paper's proxy on a spring.",
+            Place::Motion(|c| &mut c.people.motion),
+        ),
+        Key::new(
             "people.v_h_mps",
             "v_h of the separation rule: how fast a person is assumed to come nearer, m/s (ISO 13855: 1.6).",
             Place::Number(1.6..=3.0, |c| &mut c.people.v_h_mps),
@@ -257,6 +271,14 @@ impl Key {
                 let names = RuleName::ALL.map(|rule| format!("\"{}\"", rule.name()));
                 format!("one of {}", names.join(", "))
             }
+            Place::Motion(_) => {
+                let names = MotionName::ALL.map(|motion| format!("\"{}\"", motion.name()));
+                format!("one of {}", names.join(", "))
+            }
+            Place::Standing(_) => {
+                let names = StandingName::ALL.map(|standing| format!("\"{}\"", standing.name()));
+                format!("one of \"{BY_THE_RULE}\", {}", names.join(", "))
+            }
             Place::Machine(_) => "\"simulated\"".into(),
             Place::LogFormat(_) => "\"text\" or \"json\"".into(),
         };
@@ -293,6 +315,10 @@ impl Key {
                 Value::Array(place(&mut config).iter().map(|v| Value::Float(*v)).collect())
             }
             Place::Rule(place) => Value::String(place(&mut config).name().into()),
+            Place::Motion(place) => Value::String(place(&mut config).name().into()),
+            Place::Standing(place) => {
+                Value::String(place(&mut config).map_or(BY_THE_RULE, StandingName::name).into())
+            }
             Place::Machine(place) => Value::String(place(&mut config).name().into()),
             Place::LogFormat(place) => Value::String(
                 match place(&mut config) {
@@ -336,6 +362,13 @@ impl Key {
             }
             Place::Point(place) => *place(config) = lengths::<3>(value)?,
             Place::Rule(place) => *place(config) = RuleName::parse(value.as_str()?)?,
+            Place::Motion(place) => *place(config) = MotionName::parse(value.as_str()?)?,
+            Place::Standing(place) => {
+                *place(config) = match value.as_str()? {
+                    BY_THE_RULE => None,
+                    name => Some(StandingName::parse(name)?),
+                }
+            }
             Place::Machine(place) => {
                 *place(config) = match value.as_str()? {
                     "simulated" => MachineKind::Simulated,
@@ -353,6 +386,9 @@ impl Key {
         Some(())
     }
 }
+
+/// The word for a standing place as the intention rule has it.
+const BY_THE_RULE: &str = "rule";
 
 fn speed(place: fn(&mut Config) -> &mut f64) -> Place {
     Place::Number(0.05..=3.0, place)

@@ -100,6 +100,7 @@ fn start() -> Stage {
         intention_rule: RuleName::Paper,
         intention: IntentionParameters::default(),
         motion: MotionName::Proxy,
+        standing: None,
         kept_from: KeptFrom::Everybody,
         v_h_mps: 1.6,
         latched_because: None,

@@ -3,7 +3,11 @@
 use crate::event::EventKind;
 use crate::frames::{Floor, Planar};
 use crate::intention::{self, Belief, IntentionParameters, Rule, RuleName, Sight, View};
+use crate::machine::Limits;
+use crate::motion::foresight::{Foresight, Walker};
+use crate::motion::planner::{Errand, Planner};
 use crate::motion::proxy::{Bump, Proxy};
+use crate::motion::standing::{self, Chance, StandingName};
 use crate::motion::{MotionName, Proposals};
 use crate::observation::PersonId;
 use crate::person::Person;
@@ -23,6 +27,8 @@ pub struct Wish {
     pub target: Floor,
     /// The object that the visitor's rule is committed to.
     pub committed: Option<usize>,
+    /// When the most probable object would be touched, s from now.
+    pub touch_secs: Option<f64>,
 }
 
 /// One visitor with a rule of their own.
@@ -43,6 +49,7 @@ pub struct Following {
     /// As it begins for everybody.
     fresh: Box<dyn Rule>,
     motion: MotionName,
+    standing: StandingName,
     visitors: Vec<Visitor>,
     /// The priors that the beliefs are about.
     believed_priors: Vec<f64>,
@@ -50,6 +57,9 @@ pub struct Following {
     wish: Option<Wish>,
     proxy: Proxy,
     proposals: Proposals,
+    planner: Planner,
+    walkers: Vec<Walker>,
+    chances: Vec<Chance>,
     conflict: Option<Conflict>,
     /// The last conflict, and how long ago it was.
     last_conflict: Option<(Conflict, Span)>,
@@ -60,17 +70,26 @@ pub struct Following {
 }
 
 impl Following {
-    pub fn new(rule: RuleName, parameters: &IntentionParameters, motion: MotionName) -> Self {
+    pub fn new(
+        rule: RuleName,
+        parameters: &IntentionParameters,
+        motion: MotionName,
+        standing: StandingName,
+    ) -> Self {
         Self {
             rule,
             fresh: rule.rule(parameters),
             motion,
+            standing,
             visitors: Vec::new(),
             believed_priors: Vec::new(),
             serves: None,
             wish: None,
             proxy: Proxy::at(Floor::new(0.0, 0.0)),
             proposals: Proposals::default(),
+            planner: Planner::default(),
+            walkers: Vec::new(),
+            chances: Vec::new(),
             conflict: None,
             last_conflict: None,
             goes_around: false,
@@ -87,8 +106,9 @@ impl Following {
         priors: &[f64],
         now: Time,
         parameters: &Parameters,
+        limits: &Limits,
     ) -> Option<Wish> {
-        let wish = self.weigh(persons, scene, priors, now, parameters);
+        let wish = self.weigh(persons, scene, priors, now, parameters, limits);
         wish.filter(|_| !persons.iter().any(Person::is_unseen))
     }
 
@@ -100,7 +120,11 @@ impl Following {
         priors: &[f64],
         now: Time,
         parameters: &Parameters,
+        limits: &Limits,
     ) -> Option<Wish> {
+        self.walkers.clear();
+        self.walkers
+            .extend(persons.iter().filter_map(|p| p.threat(now)).map(|threat| Walker::foreseen(&threat)));
         self.visitors.retain(|v| persons.iter().any(|p| p.id() == v.person));
         if self.believed_priors != priors {
             self.believed_priors.clear();
@@ -143,9 +167,18 @@ impl Following {
             .iter()
             .filter(reliable)
             .max_by(|a, b| strength(a).total_cmp(&strength(b)).then(b.person.cmp(&a.person)));
+        let held = self.wish.map(|w| w.target);
         self.wish = served.and_then(|v| {
-            let target = intention::command_position(scene, &v.belief)?;
-            Some(Wish { visitor: v.person, target, committed: v.belief.committed })
+            let velocity = persons.iter().find(|p| p.id() == v.person)?.velocity();
+            let target = match self.standing {
+                StandingName::Mean => intention::command_position(scene, &v.belief)?,
+                StandingName::InTime => {
+                    v.chances(scene, velocity, &mut self.chances);
+                    standing::stand(&self.chances, held, &self.walkers, limits)?
+                }
+            };
+            let touch_secs = v.belief.best().map(|i| intention::touch_secs(&v.sights[i], velocity));
+            Some(Wish { visitor: v.person, target, committed: v.belief.committed, touch_secs })
         });
         self.serves = served.map(|v| v.person);
         self.wish
@@ -189,6 +222,33 @@ impl Following {
             self.proxy = Proxy::at(governor.commanded().position());
             return;
         }
+        let soft_start_mps = SOFT_START_MPS + SOFT_START_MPS2 * since.secs();
+        if self.motion == MotionName::Planner {
+            let foresight = Foresight {
+                limits: separation.limits,
+                parameters: separation.parameters,
+                footprint: separation.scene.footprint(),
+                keep_outs: separation.scene.keep_outs(),
+                // With the separation rule left out there is nobody to be led around either.
+                walkers: if separation.threats.is_empty() { &[] } else { &self.walkers },
+            };
+            let in_time = |secs: f64| self.planner.arrival_secs() + STILL_BEFORE_TOUCH_SECS < secs;
+            // The hand will be there before the column: nearly there and still serves, nearly there and moving does not.
+            let too_late = wish.and_then(|w| w.touch_secs).is_some_and(|secs| !in_time(secs));
+            let settles = too_late && here.distance_m(target) < NEARLY_M;
+            let errand = Errand {
+                target: if settles { here } else { target },
+                speed_cap_mps: soft_start_mps,
+                inside,
+                elapsed_secs: period.secs(),
+            };
+            self.planner.plan(governor.commanded(), &errand, &foresight);
+            self.goes_around = self.planner.goes_around();
+            let choice = governor.govern(self.planner.velocities(), measured, separation, period);
+            self.conflict = choice.conflict;
+            self.proxy = Proxy::at(governor.commanded().position());
+            return;
+        }
         let clearances = &self.clearances_m;
         let ball = self.proxy.position();
         let heads = separation.threats.iter().zip(clearances).filter_map(|(threat, radius_m)| {
@@ -202,7 +262,6 @@ impl Following {
             Some(Bump { gap_m, away: keep_out.away(footprint, ball)? })
         });
         self.proxy.roll(target, here, heads.chain(rims), separation.limits, &inside, period.secs());
-        let soft_start_mps = SOFT_START_MPS + SOFT_START_MPS2 * since.secs();
         let wanted = self.proxy.followed_from(here);
         self.proposals.fill(wanted, soft_start_mps, here, target, separation.threats, &inside);
         self.goes_around = self.proposals.goes_around();
@@ -298,6 +357,25 @@ impl Following {
     }
 }
 
+impl Visitor {
+    /// What may be touched, the most probable first.
+    fn chances(&self, scene: &Scene, velocity: Planar, out: &mut Vec<Chance>) {
+        out.clear();
+        let total = self.belief.total();
+        for ((object, sight), weight) in scene.objects().iter().zip(&self.sights).zip(&self.belief.weights) {
+            if *weight > LEAST_CHANCE * total {
+                out.push(Chance {
+                    place: object.column_place(),
+                    probability: weight / total,
+                    touch_secs: intention::touch_secs(sight, velocity),
+                });
+            }
+        }
+        out.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        out.truncate(MOST_CHANCES);
+    }
+}
+
 /// The paper's cone: 45 cm around a person, shrinking smoothly to 20 cm as the head comes near an object.
 fn cone_radius_m(nearest_object_m: f64) -> f64 {
     let share = ((nearest_object_m - CONE_SMALL_WITHIN_M) / (CONE_LARGE_FROM_M - CONE_SMALL_WITHIN_M))
@@ -305,6 +383,13 @@ fn cone_radius_m(nearest_object_m: f64) -> f64 {
     CONE_SMALL_M + (CONE_LARGE_M - CONE_SMALL_M) * share
 }
 
+/// What is less probable is not worth a place.
+const LEAST_CHANCE: f64 = 0.01;
+const MOST_CHANCES: usize = 6;
+/// A prop that a hand meets has stood still for so long, s.
+const STILL_BEFORE_TOUCH_SECS: f64 = 0.25;
+/// Nearer than this, and still, it serves: inside what the evaluation asks, m.
+const NEARLY_M: f64 = 0.085;
 /// A visitor who is served keeps being served against one who is this much stronger.
 const CONSTANCY: f64 = 0.1;
 const CONE_LARGE_M: f64 = 0.45;

@@ -132,7 +132,14 @@ impl Outlook {
 
     /// With everybody as they are: a second look would find the same, so one is enough for the whole way.
     fn weigh(&mut self) -> Option<Wish> {
-        self.following.wanted(&self.persons, &self.scene, &self.priors, self.at, &self.parameters)
+        self.following.wanted(
+            &self.persons,
+            &self.scene,
+            &self.priors,
+            self.at,
+            &self.parameters,
+            &self.limits,
+        )
     }
 
     fn roll(self, wish: Option<Wish>) -> Vec<Floor> {

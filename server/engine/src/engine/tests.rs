@@ -47,6 +47,7 @@ impl Room {
             intention_rule: RuleName::PaperBest,
             intention: IntentionParameters::default(),
             motion: MotionName::Proxy,
+            standing: None,
             kept_from: KeptFrom::Everybody,
             v_h_mps: 1.6,
             latched_because: latched_because.map(str::to_owned),

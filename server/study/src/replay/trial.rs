@@ -228,6 +228,7 @@ impl<'a> Playback<'a> {
             intention_rule: conduct.rule,
             intention: conduct.intention.clone(),
             motion: conduct.motion,
+            standing: None,
             kept_from: conduct.kept_from,
             v_h_mps: conduct.v_h_mps,
             latched_because: None,
