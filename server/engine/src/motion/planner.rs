@@ -214,7 +214,7 @@ fn drive(plan: &Plan, start: (Floor, Planar), errand: &Errand, foresight: &Fores
         let allowed =
             |next: &Planar| foresight.allows(p + (v + *next) * (0.5 * STEP_SECS), *next, t + STEP_SECS);
         let next = SHARES.into_iter().map(next_of).find(allowed).unwrap_or_else(|| next_of(0.0));
-        p = p + (v + next) * (0.5 * STEP_SECS);
+        p += (v + next) * (0.5 * STEP_SECS);
         v = next;
     }
     HORIZON_SECS + LATE_SECS_PER_M * p.distance_m(errand.target)
@@ -357,7 +357,7 @@ mod tests {
             let allowed = |next: &Planar| foresight.allows(p + *next * PERIOD_SECS, *next, 0.0);
             let next = planner.velocities().iter().map(reached).find(allowed);
             v = next.unwrap_or_else(|| reached(&Planar::ZERO));
-            p = p + v * PERIOD_SECS;
+            p += v * PERIOD_SECS;
             least = least.min(walkers.first().map_or(f64::INFINITY, |walker| p.distance_m(walker.head)));
         }
         (f64::INFINITY, least)
