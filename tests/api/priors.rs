@@ -84,10 +84,9 @@ async fn a_preview_tells_what_priors_would_do_and_changes_nothing() {
     assert_eq!(previewed["target_m"], chosen["column_place_m"]);
     assert_eq!(previewed["serves"], state["persons"][0]["id"]);
     let last = previewed["objects"].as_array().unwrap().last().unwrap();
-    assert_eq!(
-        (&last["id"], &last["prior"], &last["probability"]),
-        (&chosen["id"], &json!(0.7), &json!(1.0))
-    );
+    assert_eq!((&last["id"], &last["prior"]), (&chosen["id"], &json!(0.7)));
+    // What is left is "none of them".
+    assert!(last["probability"].as_f64().unwrap() > 0.9, "{last}");
     assert!(!previewed["planned_path_m"].as_array().unwrap().is_empty());
     let after = server.good("GET", "/api/v1/state", None).await;
     assert_eq!(prior(&after, "lamp"), 0.5, "nothing is changed");

@@ -56,12 +56,14 @@ impl People {
 mod tests {
     use super::*;
     use crate::config::Config;
+    use covr_engine::intention::RuleName;
 
     fn of_file(text: &str) -> Result<IntentionParameters, ParametersRefused> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("parameters.toml");
         std::fs::write(&path, text).unwrap();
-        People { intention_parameters: Some(path), ..Config::default().people }.intention()
+        let intention_rule = RuleName::PaperBest;
+        People { intention_rule, intention_parameters: Some(path), ..Config::default().people }.intention()
     }
 
     #[test]
