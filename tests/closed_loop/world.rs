@@ -58,15 +58,13 @@ impl World {
             jitter: Span::from_secs(random.between(0.0, 0.08 - delay)),
             loss: random.between(0.0, 0.2),
         };
-        // One draw for both, so that a seed's people and rooms stay what they were before there were two motions.
-        let conduct = random.below(RuleName::ALL.len() * MotionName::ALL.len());
         let config = EngineConfig {
             limits: machine.limits(),
             travel,
             period: Span::from_millis(4),
-            intention_rule: RuleName::ALL[conduct % RuleName::ALL.len()],
+            intention_rule: RuleName::ALL[random.below(RuleName::ALL.len())],
             intention: IntentionParameters::default(),
-            motion: MotionName::ALL[conduct / RuleName::ALL.len()],
+            motion: MotionName::ALL[random.below(MotionName::ALL.len())],
             standing: None,
             kept_from: KeptFrom::Everybody,
             v_h_mps,

@@ -285,8 +285,9 @@ impl Engine {
         let homing = self.report.map(|r| r.homing);
         // The machine says `Homed` of an earlier run until it has taken up the command.
         let begun = now - self.mode_since > self.parameters.link;
+        let rests = self.rests_since.is_some();
         match (self.mode, homing) {
-            (Mode::Homing, Some(Homing::Homed)) if begun => self.enter(Mode::Ready, "homed", now),
+            (Mode::Homing, Some(Homing::Homed)) if begun && rests => self.enter(Mode::Ready, "homed", now),
             (
                 Mode::Ready | Mode::Following | Mode::ProtectiveStop,
                 Some(Homing::NotHomed | Homing::Failed),

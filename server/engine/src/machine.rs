@@ -61,7 +61,7 @@ pub enum Homing {
 pub struct MachineReport {
     /// When the controller last gave a good answer (R8 watches its age).
     pub answered_at: Time,
-    /// Measured position of the column's centre.
+    /// Measured position of the column's centre: by the last home found, also while homing anew.
     pub position: Floor,
     /// Measured velocity, m/s.
     pub velocity: Planar,

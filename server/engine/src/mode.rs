@@ -92,6 +92,8 @@ impl RequestKind {
 pub struct Conditions {
     /// Positions are in the room frame.
     pub homed: bool,
+    /// The column still moves: who takes it over now could not go on braking as hard as it does.
+    pub moves: bool,
     /// Why a latched stop or a fault cannot be left yet: its cause is still there.
     pub cause_still_there: Option<String>,
 }
@@ -116,6 +118,9 @@ pub fn respond(mode: Mode, request: RequestKind, conditions: &Conditions) -> Res
         (LatchedStop, Stop) => AlreadySo("stopped already; the stop is latched"),
         (_, Stop) => Go(LatchedStop),
 
+        (Disarmed | Ready, Home | Arm) if conditions.moves => {
+            refuse("the column still moves: wait until it rests")
+        }
         (Disarmed | Ready, Home) => Go(Homing),
         (Homing, Home) => AlreadySo("homing already"),
         (Following | ProtectiveStop, Home) => refuse("the machine is armed: disarm first"),
@@ -152,7 +157,7 @@ mod tests {
     use Response::{AlreadySo, Go, Refuse};
 
     fn conditions(homed: bool, cause: Option<&str>) -> Conditions {
-        Conditions { homed, cause_still_there: cause.map(str::to_owned) }
+        Conditions { homed, moves: false, cause_still_there: cause.map(str::to_owned) }
     }
 
     #[test]
@@ -212,6 +217,17 @@ mod tests {
                 if request == RequestKind::Reset {
                     assert!(!matches!(response, Go(to) if to != Mode::Disarmed));
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_takes_over_a_column_that_still_moves() {
+        let moves = Conditions { moves: true, ..conditions(true, None) };
+        for mode in Mode::ALL {
+            for request in [RequestKind::Home, RequestKind::Arm] {
+                let response = respond(mode, request, &moves);
+                assert!(!matches!(response, Go(_)), "{mode:?} {request:?}: {response:?}");
             }
         }
     }

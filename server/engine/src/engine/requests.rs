@@ -93,6 +93,7 @@ impl Engine {
     pub(super) fn conditions(&self) -> Conditions {
         Conditions {
             homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
+            moves: self.report.is_some() && self.rests_since.is_none(),
             cause_still_there: self.supervisor.cause_still_there(),
         }
     }

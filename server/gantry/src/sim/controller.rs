@@ -15,6 +15,7 @@ pub(super) struct Controller {
     drive: Drive,
     homing: Homing,
     sequences: [HomingAxis; 2],
+    switches_m: Option<[f64; 2]>,
     plans: [HomingPlan; 2],
     timeout_ticks: u32,
     silent_ticks: u32,
@@ -46,6 +47,7 @@ impl Controller {
             drive: Drive::Released,
             homing: Homing::NotHomed,
             sequences: [HomingAxis::default(); 2],
+            switches_m: None,
             plans: [HomingPlan::new(machine, span.x), HomingPlan::new(machine, span.y)],
             timeout_ticks: (machine.serial_timeout.micros() / TICK_MICROS) as u32,
             silent_ticks: 0,
@@ -58,7 +60,7 @@ impl Controller {
         self.drive = Drive::On;
         self.homing = Homing::Homed;
         self.axes.iter_mut().for_each(|axis| axis.hold(at_m));
-        self.sequences = switches_m.map(HomingAxis::done);
+        self.switches_m = Some(switches_m);
     }
 
     pub(super) fn take(&mut self, packet: Packet) {
@@ -110,9 +112,9 @@ impl Controller {
         self.homing
     }
 
-    /// Where the switches tripped on the measuring approach, m since power-on, once homed.
-    pub(super) fn switch_places_m(&self) -> Option<[f64; 2]> {
-        Some([self.sequences[0].switch_m()?, self.sequences[1].switch_m()?])
+    /// Where the switches tripped when it was last homed, m since power-on: the reference holds until a new one is found.
+    pub(super) const fn switch_places_m(&self) -> Option<[f64; 2]> {
+        self.switches_m
     }
 
     fn release(&mut self) {
@@ -142,8 +144,11 @@ impl Controller {
                 }
             }
         }
-        if are_done == [true; 2] {
+        if are_done == [true; 2]
+            && let (Some(x), Some(y)) = (self.sequences[0].switch_m(), self.sequences[1].switch_m())
+        {
             self.homing = Homing::Homed;
+            self.switches_m = Some([x, y]);
         }
     }
 }

@@ -64,11 +64,6 @@ impl HomingPlan {
 }
 
 impl HomingAxis {
-    /// At rest after a sequence whose measuring approach ended there, m since power-on.
-    pub(super) fn done(switch_m: f64) -> Self {
-        Self { phase: Phase::Resting, switch_m: Some(switch_m), ..Self::default() }
-    }
-
     pub(super) fn step(&mut self, plan: &HomingPlan, axis: &AxisController, on_switch: bool) -> HomingStep {
         let here_m = axis.measured_m();
         let p = &plan.parameters;

@@ -1,6 +1,6 @@
 //! Homing: repeatable from anywhere, slow, inside the stops, and honest about failure.
 
-use covr_engine::frames::Floor;
+use covr_engine::frames::{Floor, Planar};
 use covr_engine::machine::{Drive, Homing};
 use covr_engine::safety::vetted::{Action, Setpoint};
 use covr_engine::time::Span;
@@ -52,6 +52,36 @@ fn before_homing_positions_count_from_where_it_was_parked() {
     assert_eq!(report.homing, Homing::NotHomed);
     let parked = course.machine.parameters().parked;
     assert!(report.position.distance_m(parked) < 1e-3, "it was told {parked:?}, and truly stands elsewhere");
+}
+
+#[test]
+fn while_it_homes_anew_its_place_is_still_known() {
+    let mut course = Course::homed();
+    let setpoint = |x: f64| {
+        let position = Floor::new(x, 0.05);
+        Action::Track(Setpoint {
+            position,
+            velocity: Planar::ZERO,
+            acceleration: Planar::ZERO,
+            valid_for: Span::from_millis(50),
+        })
+    };
+    for k in 0..500 {
+        course.step(setpoint(0.05 + f64::from(k) * 0.002));
+    }
+    let mut running = 0;
+    for _ in 0..500 {
+        let report = course.step(Action::Home).1.report;
+        let truth = course.machine.true_position();
+        assert!(
+            report.position.distance_m(truth) < 5e-3,
+            "{:?}: {:?}, {truth:?}",
+            report.homing,
+            report.position
+        );
+        running += u32::from(report.homing == Homing::Running);
+    }
+    assert!(running > 100, "it homes");
 }
 
 #[test]
