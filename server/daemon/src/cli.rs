@@ -9,6 +9,7 @@ use crate::config::LogFormat;
 use crate::evaluate::Evaluate;
 use crate::explain::Explain;
 use crate::fit::Fit;
+use crate::prove::Prove;
 
 /// CoVR: the column is there before your hand is.
 #[derive(Debug, Parser)]
@@ -37,6 +38,8 @@ pub enum Command {
     Explain(Box<Explain>),
     /// Fit the parameters of an intention rule to recorded people, and judge them on people left out.
     Fit(Fit),
+    /// Try to have the machine break the separation rule in random worlds; exit code 1 if it ever does.
+    Prove(Prove),
     /// Ask a running server whether it is ready; exit code 2 if it is not.
     Health(Health),
     /// Print every configuration key with its default and its meaning.

@@ -98,7 +98,7 @@ pub fn run(options: &Evaluate) -> anyhow::Result<String> {
         )?,
     };
     let plan = plan(options);
-    let bar = bar();
+    let bar = bar("trials");
     let started = Instant::now();
     let mut evaluation: Evaluation = evaluate(&subjects, &plan, &|done, count| {
         bar.set_length(count as u64);
@@ -153,11 +153,12 @@ fn conditions(options: &Evaluate) -> Conditions {
     }
 }
 
-fn bar() -> ProgressBar {
+/// Progress on the terminal, counted in these; hidden where there is none.
+pub(crate) fn bar(what: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} trials, {eta} left");
+    let style = ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {what}, {{eta}} left"));
     ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 

@@ -19,6 +19,7 @@ pub mod live;
 pub mod logs;
 pub mod meters;
 pub mod persons;
+pub mod prove;
 pub mod recorder;
 pub mod recording;
 pub mod serve;

@@ -8,8 +8,9 @@ use anyhow::Context;
 use clap::Parser;
 use covr_server::cli::{Check, Cli, Command, Health, Serve, Visitor};
 use covr_server::config::{self, Config};
+use covr_server::prove::Prove;
 use covr_server::serve::{Reach, Server, stop_at_signal, told_by_signal};
-use covr_server::{evaluate, explain, fit, logs, visitor};
+use covr_server::{evaluate, explain, fit, logs, prove, visitor};
 use covr_wire::scene::parse_scene;
 
 fn main() -> ExitCode {
@@ -21,6 +22,7 @@ fn main() -> ExitCode {
         Command::Evaluate(options) => evaluate::run(&options).and_then(|table| print(&table)),
         Command::Explain(options) => explain::run(&options).and_then(|words| print(&words)),
         Command::Fit(options) => fit::run(&options).and_then(|report| print(&report)),
+        Command::Prove(options) => return attempt(&options),
         Command::Health(options) => health(&options),
         Command::Config => print(&config::reference(&Config::default())),
     };
@@ -65,6 +67,18 @@ fn health(options: &Health) -> anyhow::Result<()> {
     });
     answer.with_context(|| format!("{url}: not ready"))?;
     print("ready\n")
+}
+
+fn attempt(options: &Prove) -> ExitCode {
+    let found = prove::run(options).and_then(|findings| print(&findings.to_string()).map(|()| findings));
+    match found {
+        Ok(findings) if findings.violations == 0 => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::from(FAILED),
+        Err(error) => {
+            complain(&format!("covr: {error:#}"));
+            ExitCode::from(FAILED)
+        }
+    }
 }
 
 fn check(options: &Check) -> ExitCode {

@@ -76,10 +76,11 @@ pub struct Engine {
     persons: Vec<Person>,
     threats: Vec<Threat>,
     report: Option<MachineReport>,
-    /// Since when the machine has been at rest, as measured.
+    /// When the machine was first measured at rest.
     rests_since: Option<Time>,
     supervisor: Supervisor,
     governor: Option<Governor>,
+    stepped_at: Option<Time>,
     following: Following,
     events: Vec<Event>,
     pending: Vec<EventKind>,
@@ -105,6 +106,7 @@ impl Engine {
             rests_since: None,
             supervisor: Supervisor::new(parameters),
             governor: None,
+            stepped_at: None,
             following: Following::new(
                 config.intention_rule,
                 &config.intention,
@@ -143,7 +145,7 @@ impl Engine {
             Observation::ClientBack(id) => self.with_person(id, |p| p.set_client_present(true)),
             Observation::Machine(report) => {
                 let rests = report.velocity.norm() < AT_REST_MPS;
-                self.rests_since = if rests { self.rests_since.or(Some(now)) } else { None };
+                self.rests_since = if rests { self.rests_since.or(Some(report.answered_at)) } else { None };
                 self.report = Some(report);
             }
             Observation::DeadlineMissed => self.supervisor.deadline(false),
@@ -163,6 +165,7 @@ impl Engine {
         }
         self.supervise(now);
         self.progress_homing(now);
+        self.keep_up_with_the_machine(now);
         let config = &self.config;
         let wish = self.following.wanted(
             &self.persons,
@@ -178,10 +181,11 @@ impl Engine {
             Mode::Homing => Vetted::hold(now),
             Mode::ProtectiveStop if self.resumes == Mode::Homing => Vetted::hold(now),
             Mode::Ready | Mode::Following | Mode::ProtectiveStop => {
-                let Some(report) = self.report else { return Vetted::hold(now) };
-                let governor = self
-                    .governor
-                    .get_or_insert_with(|| Governor::taking_over(report.position, report.velocity));
+                let rests = self.rests(now);
+                let Some(report) = self.report.filter(|_| rests || self.governor.is_some()) else {
+                    return Vetted::hold(now);
+                };
+                let governor = self.governor.get_or_insert_with(|| Governor::taking_over(report.position));
                 let separation = Separation {
                     scene: &self.scene,
                     limits: &config.limits,
@@ -241,11 +245,28 @@ impl Engine {
         &self.config
     }
 
+    /// A step that comes late finds the machine farther on. A machine that went on by itself for longer than a reaction,
+    /// or is not where it should be, is let come to rest and taken over anew.
+    fn keep_up_with_the_machine(&mut self, now: Time) {
+        let Self { config: EngineConfig { period, limits, .. }, parameters, .. } = self;
+        let unwatched = self.stepped_at.map_or(Span::ZERO, |before| now - (before + *period));
+        let silent = self.report.map_or(Span::ZERO, |report| now - report.answered_at);
+        if unwatched.max(silent) > parameters.reaction || self.supervisor.is_astray() {
+            self.governor = None;
+        } else if let Some(governor) =
+            self.governor.as_mut().filter(|_| unwatched.secs() > 0.5 * period.secs())
+        {
+            governor.carry_on(unwatched, limits);
+        }
+        self.stepped_at = Some(now);
+    }
+
     fn supervise(&mut self, now: Time) {
         let watched = Watched {
             now,
             report: self.report.as_ref(),
             tracking: self.governor.as_ref().map(Governor::commanded),
+            commanded_at: self.stepped_at.unwrap_or(now),
             homes: self.mode == Mode::Homing,
             persons: &self.persons,
             arena_confirmed_clear: self.arena_confirmed_clear,
@@ -285,7 +306,7 @@ impl Engine {
         let homing = self.report.map(|r| r.homing);
         // The machine says `Homed` of an earlier run until it has taken up the command.
         let begun = now - self.mode_since > self.parameters.link;
-        let rests = self.rests_since.is_some();
+        let rests = self.rests(now);
         match (self.mode, homing) {
             (Mode::Homing, Some(Homing::Homed)) if begun && rests => self.enter(Mode::Ready, "homed", now),
             (
@@ -302,7 +323,8 @@ impl Engine {
     fn stop_and_release(&self, now: Time) -> Vetted {
         let Some(report) = self.report.filter(|r| r.drive == Drive::On) else { return Vetted::release(now) };
         let stopped_for = now - self.mode_since;
-        let rests = self.rests_since.is_some_and(|since| now - since >= REST_BEFORE_RELEASE);
+        // By what it answered: an old answer says nothing of what it does now.
+        let rests = self.rests_since.is_some_and(|since| report.answered_at - since >= REST_BEFORE_RELEASE);
         let runs_away =
             stopped_for > BRAKE_BITES_WITHIN && report.velocity.norm() > self.speed_then_mps + RUNS_AWAY_MPS;
         if rests || runs_away || stopped_for > LONGEST_BRAKE {
@@ -310,6 +332,12 @@ impl Engine {
         } else {
             Vetted::hold(now)
         }
+    }
+
+    /// Measured at rest, and not long ago.
+    pub(super) fn rests(&self, now: Time) -> bool {
+        let fresh = self.report.is_some_and(|report| now - report.answered_at <= self.parameters.reaction);
+        fresh && self.rests_since.is_some()
     }
 
     /// Nobody can be met at creep speed, whichever way homing goes. Before the machine is homed its place is what it

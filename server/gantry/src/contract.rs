@@ -1,5 +1,6 @@
 //! What every machine offers: the control thread reads, updates the engine, writes; once a period.
 
+use crate::sim::faults::Faults;
 use covr_engine::frames::{Floor, Planar};
 use covr_engine::machine::{Limits, MachineReport, Travel};
 use covr_engine::safety::vetted::Vetted;
@@ -35,6 +36,9 @@ pub trait Gantry: Send {
 pub trait Simulated: Gantry {
     /// The true state at the last moment that it was read or written.
     fn truth(&self) -> Truth;
+
+    /// What is wrong with it from now on. A machine that cannot break takes no notice.
+    fn set_faults(&mut self, _faults: Faults) {}
 }
 
 /// One reading.

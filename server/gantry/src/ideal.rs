@@ -81,10 +81,20 @@ impl IdealMachine {
     }
 }
 
-/// Position and velocity `secs` after a setpoint was given.
+/// Position and velocity `secs` after a setpoint was given: an axis that slows stops at rest.
 fn along(setpoint: &Setpoint, secs: f64) -> (Floor, Planar) {
-    let position = setpoint.position + setpoint.velocity * secs + setpoint.acceleration * (0.5 * secs * secs);
-    (position, setpoint.velocity + setpoint.acceleration * secs)
+    let on = |velocity: f64, acceleration: f64| {
+        let rests_after =
+            if velocity * acceleration < 0.0 { -velocity / acceleration } else { f64::INFINITY };
+        let t = secs.min(rests_after);
+        (
+            velocity * t + 0.5 * acceleration * t * t,
+            if t == rests_after { 0.0 } else { velocity + acceleration * t },
+        )
+    };
+    let (x, vx) = on(setpoint.velocity.x, setpoint.acceleration.x);
+    let (y, vy) = on(setpoint.velocity.y, setpoint.acceleration.y);
+    (setpoint.position + Planar::new(x, y), Planar::new(vx, vy))
 }
 
 /// Way gone and speed left, `secs` into braking from `speed_mps`.

@@ -250,6 +250,10 @@ impl Gantry for SimulatedMachine {
 }
 
 impl Simulated for SimulatedMachine {
+    fn set_faults(&mut self, faults: Faults) {
+        self.faults = faults;
+    }
+
     fn truth(&self) -> Truth {
         Truth {
             position: self.true_position(),

@@ -6,6 +6,8 @@ pub mod bound;
 pub mod checker;
 pub mod evaluate;
 pub mod fit;
+mod parallel;
+pub mod prove;
 pub mod random;
 pub mod replay;
 pub mod report;

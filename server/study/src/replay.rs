@@ -23,6 +23,7 @@ use covr_engine::safety::vetted::{Action, Vetted};
 use covr_engine::scene::{Scene, SceneSpec};
 use covr_engine::time::{Span, Time};
 use covr_gantry::contract::{Simulated, Truth};
+use covr_gantry::sim::faults::Faults;
 
 use crate::checker::{Checker, Moment, Motion, PersonNow, Rectangle, Rules, Track, Verdict};
 use crate::random::Random;
@@ -40,6 +41,8 @@ pub struct ClosedLoop {
     checkers: [Checker; 2],
     now: Time,
     persons: Vec<PersonNow>,
+    missed: bool,
+    last: Option<Vetted>,
 }
 
 /// A person's head as it really is now.
@@ -85,7 +88,14 @@ impl ClosedLoop {
             checkers,
             now: start,
             persons: Vec::new(),
+            missed: false,
+            last: None,
         }
+    }
+
+    /// What is wrong with the machine from now on; an ideal one knows no faults.
+    pub fn set_faults(&mut self, faults: Faults) {
+        self.machine.set_faults(faults);
     }
 
     /// Ask the engine.
@@ -122,14 +132,30 @@ impl ClosedLoop {
         }
         let report = self.machine.read(at).report;
         self.engine.observe(at, Observation::Machine(report));
-        self.engine.observe(at, Observation::DeadlineMet);
+        let deadline = if self.missed { Observation::DeadlineMissed } else { Observation::DeadlineMet };
+        self.missed = false;
+        self.engine.observe(at, deadline);
         let command = self.engine.step(at);
         // A command that the machine does not take is the machine's to report; its dead-man brakes.
         let taken = self.machine.write(at, &command).is_ok();
         let stepped = Stepped { at, report, command, truth: self.machine.truth() };
-        self.check(&stepped, taken, heads);
+        self.last = Some(command);
+        self.check(&stepped, Some(taken), heads);
         self.now += self.engine.config().period;
         stepped
+    }
+
+    /// One control period in which the control thread does not get its turn: the machine goes by what it was told last.
+    pub fn miss_step(&mut self, heads: &[TrueHead]) -> Truth {
+        let at = self.now;
+        let report = self.machine.read(at).report;
+        let truth = self.machine.truth();
+        if let Some(command) = self.last {
+            self.check(&Stepped { at, report, command, truth }, None, heads);
+        }
+        self.missed = true;
+        self.now += self.engine.config().period;
+        truth
     }
 
     /// Home and arm, with nobody there; or the mode in which it stuck.
@@ -192,7 +218,8 @@ impl ClosedLoop {
         self.checkers.each_mut().map(Checker::take_verdict)
     }
 
-    fn check(&mut self, stepped: &Stepped, taken: bool, heads: &[TrueHead]) {
+    /// `taken`: whether the machine took the command; none when nothing was commanded, and nothing of it is to be checked.
+    fn check(&mut self, stepped: &Stepped, taken: Option<bool>, heads: &[TrueHead]) {
         let scene = self.engine.scene();
         self.persons.clear();
         self.persons.extend(heads.iter().map(|head| {
@@ -207,7 +234,7 @@ impl ClosedLoop {
         }));
         let truly = Motion { position: stepped.truth.position, velocity: stepped.truth.velocity };
         let (commanded, follows_setpoints) = match stepped.command.action() {
-            Action::Track(setpoint) if taken => {
+            Action::Track(setpoint) if taken == Some(true) => {
                 (Motion { position: setpoint.position, velocity: setpoint.velocity }, true)
             }
             _ => (truly, false),
@@ -222,7 +249,9 @@ impl ClosedLoop {
         };
         let [of_truth, of_commands] = &mut self.checkers;
         of_truth.check(&moment);
-        of_commands.check(&Moment { column: commanded, ..moment });
+        if taken.is_some() {
+            of_commands.check(&Moment { column: commanded, ..moment });
+        }
     }
 }
 

@@ -66,7 +66,7 @@ impl Engine {
     pub fn outlook(&self, now: Time) -> Outlook {
         let governor = self.governor.or_else(|| {
             let report = self.report?;
-            Some(Governor::taking_over(report.position, report.velocity))
+            Some(Governor::taking_over(report.position))
         });
         Outlook {
             at: now,

@@ -65,7 +65,7 @@ impl Engine {
     }
 
     fn request_machine(&mut self, now: Time, kind: RequestKind, reason: String) -> Answer {
-        match mode::respond(self.mode, kind, &self.conditions()) {
+        match mode::respond(self.mode, kind, &self.conditions(now)) {
             Response::AlreadySo(detail) => Answer { outcome: Outcome::AlreadySo, detail: detail.to_owned() },
             Response::Refuse(detail) => Answer { outcome: Outcome::Refused, detail },
             Response::Go(Mode::Homing) if let Some(detail) = self.shape_on_the_way_home() => refused(detail),
@@ -90,10 +90,10 @@ impl Engine {
         }
     }
 
-    pub(super) fn conditions(&self) -> Conditions {
+    pub(super) fn conditions(&self, now: Time) -> Conditions {
         Conditions {
             homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
-            moves: self.report.is_some() && self.rests_since.is_none(),
+            moves: self.report.is_some() && !self.rests(now),
             cause_still_there: self.supervisor.cause_still_there(),
         }
     }

@@ -26,7 +26,7 @@ impl Engine {
 
     /// The whole state at `now`.
     pub fn snapshot(&self, now: Time) -> Snapshot {
-        let conditions = self.conditions();
+        let conditions = self.conditions(now);
         let refusal = |kind| match mode::respond(self.mode, kind, &conditions) {
             Response::Go(_) => (kind, None),
             Response::AlreadySo(why) => (kind, Some(why.to_owned()).filter(|_| kind != RequestKind::Stop)),

@@ -5,9 +5,9 @@
 //! moved within what the certificate allowed for.
 
 use crate::frames::{Floor, Planar};
-use crate::machine::Limits;
-use crate::safety::path::{AxisPath, BrakePath, State};
-use crate::safety::separation::{Conflict, MEASUREMENT_NOISE_MPS, Separation};
+use crate::machine::{AxisLimits, Limits};
+use crate::safety::path::{AxisPath, AxisState, BrakePath, State};
+use crate::safety::separation::{Conflict, Separation};
 use crate::safety::vetted::{Action, Setpoint, Vetted};
 use crate::time::{Span, Time};
 
@@ -27,11 +27,27 @@ pub struct Choice {
 }
 
 impl Governor {
-    /// Take the machine over as it is measured: where it stands, or in its motion if it was armed while it still moved.
-    /// To command rest to a moving machine would have it run past and come back, certified by nobody.
-    pub fn taking_over(place: Floor, velocity: Planar) -> Self {
-        let rests = velocity.norm() < MEASUREMENT_NOISE_MPS;
-        Self { commanded: State::moving(place, if rests { Planar::ZERO } else { velocity }) }
+    /// Take a machine that rests over where it is measured. One that moves is told to hold first: what it could do from
+    /// its motion was certified by nobody.
+    pub fn taking_over(place: Floor) -> Self {
+        Self { commanded: State::moving(place, Planar::ZERO) }
+    }
+
+    /// For so long nothing was commanded: the machine went on at the acceleration that it was told last, no faster than
+    /// it may and not past rest. That is within what was certified, as long as it is no longer than one reaction.
+    pub fn carry_on(&mut self, unwatched: Span, limits: &Limits) {
+        let on = |axis: AxisState, own: &AxisLimits| {
+            let slows = axis.v * axis.a < 0.0;
+            let rests_after = if slows { -axis.v / axis.a } else { f64::INFINITY };
+            let t = unwatched.secs().min(rests_after);
+            let v = (axis.v + axis.a * t).clamp(-own.speed_mps, own.speed_mps);
+            // An acceleration that could not be ramped out before top speed or rest has ended by itself.
+            let ramped_out = v + axis.a * axis.a.abs() / (2.0 * own.jerk_mps3);
+            let goes_on = ramped_out.abs() <= own.speed_mps && ramped_out * v > 0.0;
+            AxisState { p: axis.p + 0.5 * (axis.v + v) * t, v, a: if goes_on { axis.a } else { 0.0 } }
+        };
+        let State { x, y } = self.commanded;
+        self.commanded = State { x: on(x, &limits.x), y: on(y, &limits.y) };
     }
 
     /// Move on by one period with the first allowed of `proposals` (velocities, best first), else brake.
@@ -166,7 +182,7 @@ mod tests {
                 threats: &threats,
                 parameters: &parameters,
             };
-            let mut governor = Governor::taking_over(Floor::new(2.0, 2.0), Planar::ZERO);
+            let mut governor = Governor::taking_over(Floor::new(2.0, 2.0));
             for proposals in wishes.iter().flat_map(|wish| std::iter::repeat_n(wish, 8)) {
                 let before = *governor.commanded();
                 let choice = governor.govern(proposals, &before, &separation, PERIOD);
@@ -183,6 +199,36 @@ mod tests {
             }
         }
 
+        /// What went on unwatched for a reaction at most ends where the certificate allowed for.
+        #[test]
+        fn what_goes_on_unwatched_stays_inside_the_certified_brake(
+            v in velocity(),
+            wish in velocity(),
+            unwatched_millis in 1..50i64,
+        ) {
+            let cap = |v: f64| v.clamp(-1.1, 1.1);
+            let mut governor = Governor {
+                commanded: State::moving(Floor::new(2.0, 2.0), Planar::new(cap(v.x), cap(v.y))),
+            };
+            for _ in 0..5 {
+                governor.commanded = governor.towards(wish, &Limits::PAPER, PERIOD);
+            }
+            let certified = BrakePath::worst(governor.commanded(), &Limits::PAPER, 0.05).extent();
+            governor.carry_on(Span::from_millis(unwatched_millis), &Limits::PAPER);
+            let after = BrakePath::now(governor.commanded(), &Limits::PAPER).extent();
+            // The worst brake bounds each axis in the direction in which it goes, but for the millimetres by which an
+            // axis near its top speed is there sooner: the allowance for following has room for that.
+            for (of, v) in [((certified.0.x, certified.1.x, after.0.x, after.1.x), governor.commanded.x.v),
+                            ((certified.0.y, certified.1.y, after.0.y, after.1.y), governor.commanded.y.v)] {
+                let (least, most, least_after, most_after) = of;
+                if v > 0.0 {
+                    prop_assert!(most_after <= most + 3e-3, "{} past {}", most_after, most);
+                } else {
+                    prop_assert!(least_after >= least - 3e-3, "{} past {}", least_after, least);
+                }
+            }
+        }
+
         /// Braking comes to rest, on either kind of brake, and stays there.
         #[test]
         fn both_brakes_come_to_rest(v in velocity()) {
@@ -195,7 +241,7 @@ mod tests {
                 parameters: &parameters,
             };
             let v = Planar::new(v.x.clamp(-1.1, 1.1), v.y.clamp(-1.1, 1.1));
-            let mut along = Governor::taking_over(Floor::new(2.0, 2.0), v);
+            let mut along = Governor { commanded: State::moving(Floor::new(2.0, 2.0), v) };
             let mut hardest = along;
             for _ in 0..200 {
                 along.protective_brake(&separation, PERIOD);

@@ -36,6 +36,15 @@ pub struct Parameters {
     pub retreat_cone_rad: f64,
     /// R3: what the commanded path keeps beyond the rule, for the following error of a healthy machine, m.
     pub following_allowance_m: f64,
+    /// R6: farther than this from the command the column is held until it rests, m: half of the allowance, as it comes
+    /// to rest farther on.
+    pub astray_m: f64,
+    /// R6: and so it is when its velocity differs by more than this, m/s.
+    pub astray_mps: f64,
+    /// R6: so often within [`Self::astray_within`] is a breach.
+    pub astray_times: u32,
+    /// R6: see [`Self::astray_times`].
+    pub astray_within: Span,
     /// R5: greatest motor current, A.
     pub current_amps: f64,
     /// R5: for so long.
@@ -79,6 +88,10 @@ impl Parameters {
             retreat_speed_mps: 0.25,
             retreat_cone_rad: 12.0_f64.to_radians(),
             following_allowance_m: 0.015,
+            astray_m: 0.0075,
+            astray_mps: 0.1,
+            astray_times: 3,
+            astray_within: Span::from_millis(2_000),
             current_amps: 5.0,
             current_for: Span::from_millis(20),
             following_error_m: 0.05,

@@ -105,12 +105,12 @@ impl AxisPath {
     }
 
     /// To rest with this share of the axis' braking and jerk, so that two axes come to rest together; with all of it
-    /// where the share could no longer stop without running back.
+    /// where the share could no longer stop without running back, or would first get faster than it need.
     pub fn brake_with_share(start: AxisState, limits: &AxisLimits, share: f64) -> Self {
         let ramp_out_mps = start.a * start.a / (2.0 * limits.jerk_mps3 * share);
-        if start.a * start.v < 0.0 && ramp_out_mps > start.v.abs()
-            || start.a.abs() > limits.braking_mps2 * share
-        {
+        let speeds_up = start.a * start.v > 0.0;
+        let would_run_back = start.a * start.v < 0.0 && ramp_out_mps > start.v.abs();
+        if speeds_up || would_run_back || start.a.abs() > limits.braking_mps2 * share {
             return Self::brake(start, limits);
         }
         Self::build(start, None, 0.0, limits.braking_mps2 * share, limits.jerk_mps3 * share)

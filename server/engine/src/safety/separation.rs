@@ -219,7 +219,7 @@ fn keeps(
 /// The true speed exceeds the commanded one by less than this, m/s.
 const MACHINE_OVERSHOOT_MPS: f64 = 0.03;
 /// A machine at rest measures less than this, m/s.
-pub(super) const MEASUREMENT_NOISE_MPS: f64 = 0.02;
+const MEASUREMENT_NOISE_MPS: f64 = 0.02;
 /// Slower than this the column rests, m/s.
 const AT_REST_MPS: f64 = 1e-6;
 /// Shortest look-ahead step; at 3 m/s of closing speed less than a millimetre passes unseen.

@@ -24,6 +24,8 @@ pub struct Watched<'a> {
     pub report: Option<&'a MachineReport>,
     /// The state last commanded, while the machine is told to track it.
     pub tracking: Option<&'a State>,
+    /// When it was commanded.
+    pub commanded_at: Time,
     /// The machine is being homed.
     pub homes: bool,
     /// Everybody in the arena.
@@ -53,8 +55,16 @@ pub struct Supervisor {
     missed_in_a_row: u32,
     over_current: Held,
     following_error: Held,
+    astray: Astray,
     velocity_error: Held,
     stall: Option<(Time, Floor, Floor)>,
+}
+
+/// How often the machine went astray of late.
+#[derive(Debug, Clone, Copy, Default)]
+struct Astray {
+    since: Option<Time>,
+    times: u32,
 }
 
 /// A condition that must hold for a while before it counts.
@@ -83,6 +93,7 @@ impl Supervisor {
             missed_in_a_row: 0,
             over_current: Held::default(),
             following_error: Held::default(),
+            astray: Astray::default(),
             velocity_error: Held::default(),
             stall: None,
         }
@@ -168,6 +179,11 @@ impl Supervisor {
         self.stall = None;
     }
 
+    /// The machine is not where certificates take it to be: no further motion may be founded on them.
+    pub fn is_astray(&self) -> bool {
+        self.rule(RuleId(6)).status == RuleStatus::Limiting
+    }
+
     /// Every rule, R1 first.
     pub fn rules(&self) -> &[RuleState] {
         &self.rules
@@ -239,8 +255,19 @@ impl Supervisor {
         let error = commanded.position().distance_m(report.position);
         let strays =
             self.following_error.for_at_least(error > p.following_error_m, now, p.following_error_for);
-        self.set(RuleId(6), breach_if(strays), now, events, || {
-            format!("{:.1} cm behind the command", error * 100.0)
+        let is_astray = is_astray(commanded, report, watched.commanded_at, &p);
+        let times = if is_astray { self.astray.again(now, p.astray_within) } else { 0 };
+        let status = match is_astray {
+            _ if strays || times >= p.astray_times => RuleStatus::Breached,
+            true => RuleStatus::Limiting,
+            false => RuleStatus::Clear,
+        };
+        self.set(RuleId(6), status, now, events, || match (status, strays) {
+            (RuleStatus::Limiting, _) => "not where it was commanded to be: held until it rests".into(),
+            (RuleStatus::Breached, false) => {
+                format!("not where it was commanded to be, {times} times in a row")
+            }
+            _ => format!("{:.1} cm behind the command", error * 100.0),
         });
 
         let difference = (commanded.velocity() - report.velocity).norm();
@@ -332,6 +359,17 @@ impl Supervisor {
     }
 }
 
+impl Astray {
+    /// Once more; how often that makes within this span.
+    fn again(&mut self, now: Time, within: Span) -> u32 {
+        if self.since.is_none_or(|since| now - since > within) {
+            *self = Self { since: Some(now), times: 0 };
+        }
+        self.times += 1;
+        self.times
+    }
+}
+
 impl Held {
     fn for_at_least(&mut self, condition: bool, now: Time, span: Span) -> bool {
         self.since = if condition { self.since.or(Some(now)) } else { None };
@@ -362,6 +400,13 @@ pub fn clears_when(rule: RuleId) -> &'static str {
         1 => "move the column back by hand, then reset with a reason; then arm",
         _ => "reset, with a reason, once the cause is gone; then arm",
     }
+}
+
+/// Whether the machine left what certificates allow it beside the command, when it was measured.
+fn is_astray(commanded: &State, report: &MachineReport, commanded_at: Time, p: &Parameters) -> bool {
+    let velocity = commanded.velocity();
+    let expected = commanded.position() + velocity * (report.answered_at - commanded_at).secs();
+    expected.distance_m(report.position) > p.astray_m || (report.velocity - velocity).norm() > p.astray_mps
 }
 
 fn breach_if(breached: bool) -> RuleStatus {

@@ -38,7 +38,9 @@ pub(super) struct LimitsWatch {
 struct Before {
     at: Time,
     column: Motion,
+    /// None after a gap: the mean of a long time says nothing of the jerk after it.
     acceleration: Option<Planar>,
+    tick_secs: f64,
 }
 
 impl Axis {
@@ -109,12 +111,16 @@ impl LimitsWatch {
                 demand(Quantity::Jerk, axis.of(acceleration - earlier) / dt, own.jerk_mps3);
             }
         }
-        let acceleration = step.map(|(_, _, acceleration)| acceleration);
-        self.before = Some(Before { at: moment.at, column: moment.column, acceleration });
+        let tick_secs = step.map_or(f64::INFINITY, |(before, dt, _)| dt.min(before.tick_secs));
+        let acceleration =
+            step.filter(|(_, dt, _)| *dt < GAP * tick_secs).map(|(_, _, acceleration)| acceleration);
+        self.before = Some(Before { at: moment.at, column: moment.column, acceleration, tick_secs });
         breaches
     }
 }
 
+/// So many times the shortest tick is a gap.
+const GAP: f64 = 1.5;
 /// Room for rounding when positions and times are differenced.
 const RELATIVE_TOLERANCE: f64 = 1e-5;
 

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 use covr_engine::frames::Floor;
 use covr_engine::intention::IntentionParameters;
@@ -21,6 +20,7 @@ use super::row::{Evaluation, Judged};
 use super::rows::{pooled, rows};
 use super::session::visits_by_cell;
 use super::subjects::{Reach, Session, Subjects, task, travel};
+use crate::parallel;
 use crate::replay::{Conduct, Glimpse, Pace, ReachTrial, TrialOutcome, TrialProblem, Walk};
 use crate::trace::{Recording, TraceError};
 
@@ -78,31 +78,14 @@ pub fn sweep(
     if jobs.is_empty() {
         return Err(EvaluationProblem::Nothing);
     }
-    let next = AtomicUsize::new(0);
     let done = AtomicUsize::new(0);
-    let work = || {
-        let mut mine = Vec::new();
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            let Some(job) = jobs.get(number) else { return mine };
-            let outcomes = with_each(plan, intentions, &cells, job);
-            let replays = cells.len() * intentions.len();
-            progress(done.fetch_add(replays, Ordering::Relaxed) + replays, replays * jobs.len());
-            mine.push((number, outcomes));
-        }
-    };
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let threads = if plan.threads == 0 { cores } else { plan.threads };
-    let mut results: Vec<_> = thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        let joined = workers.into_iter().map(|worker| match worker.join() {
-            Ok(mine) => mine,
-            Err(panic) => std::panic::resume_unwind(panic),
-        });
-        joined.flatten().collect()
+    let replays = cells.len() * intentions.len();
+    let outcomes = parallel::each(jobs.len(), plan.threads, |number| {
+        let outcomes = with_each(plan, intentions, &cells, &jobs[number]);
+        progress(done.fetch_add(replays, Ordering::Relaxed) + replays, replays * jobs.len());
+        outcomes
     });
-    results.sort_by_key(|(job, _)| *job);
-    let outcomes = results.into_iter().map(|(_, outcome)| outcome).collect::<Result<Vec<_>, _>>()?;
+    let outcomes = outcomes.into_iter().collect::<Result<Vec<_>, _>>()?;
     let mut of_each: Vec<Vec<Case<'_>>> = intentions.iter().map(|_| Vec::new()).collect();
     for (job, outcomes) in jobs.iter().zip(outcomes) {
         let (file, recording) = match job {

@@ -1,8 +1,6 @@
 //! The log loss of a rule's belief before recorded reaches: poses, sights and rule, no machine. Fast enough to search with.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 use covr_engine::frames::{Planar, Pose, Room};
 use covr_engine::intention::{Belief, IntentionParameters, RuleName, Sight, View, sights};
@@ -13,6 +11,7 @@ use covr_engine::time::{Span, Time};
 
 use super::folds::{Loss, Objective, Tally};
 use crate::evaluate::{Draw, Objects};
+use crate::parallel;
 use crate::replay::{LOOKS_BEFORE_REACH_SECS, TrialProblem};
 use crate::trace::Recording;
 
@@ -53,8 +52,7 @@ impl BeliefLoss {
                 reaches.push(Arc::new(Watched::of(recording, goal, reach, objects)?));
             }
         }
-        let cores = thread::available_parallelism().map_or(1, usize::from);
-        Ok(Self { rule, reaches, threads: if threads == 0 { cores } else { threads } })
+        Ok(Self { rule, reaches, threads })
     }
 }
 
@@ -64,30 +62,13 @@ impl Objective for BeliefLoss {
     }
 
     fn loss(&self, parameters: &IntentionParameters) -> Loss {
-        let next = AtomicUsize::new(0);
-        let work = || {
-            let mut mine = Vec::new();
-            loop {
-                let index = next.fetch_add(1, Ordering::Relaxed);
-                match self.reaches.get(index) {
-                    Some(reach) => mine.push((index, reach.tally(self.rule, parameters))),
-                    None => return mine,
-                }
-            }
-        };
-        let mut tallies: Vec<(usize, Tally)> = thread::scope(|scope| {
-            let workers: Vec<_> = (0..self.threads).map(|_| scope.spawn(work)).collect();
-            let joined = workers.into_iter().map(|worker| match worker.join() {
-                Ok(mine) => mine,
-                Err(panic) => std::panic::resume_unwind(panic),
-            });
-            joined.flatten().collect()
+        let tallies = parallel::each(self.reaches.len(), self.threads, |index| {
+            self.reaches[index].tally(self.rule, parameters)
         });
         // Summed up in their order, whoever did them.
-        tallies.sort_by_key(|(index, _)| *index);
         let mut loss = Loss::new();
-        for (index, tally) in tallies {
-            let sum = loss.entry(self.reaches[index].person.clone()).or_default();
+        for (reach, tally) in self.reaches.iter().zip(tallies) {
+            let sum = loss.entry(reach.person.clone()).or_default();
             *sum = sum.with(tally);
         }
         loss

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::random::Random;
+use crate::replay::{ClosedLoop, LinkProfile};
 use covr_engine::EngineConfig;
 use covr_engine::frames::{Floor, Planar, Point};
 use covr_engine::intention::{IntentionParameters, RuleName};
@@ -13,9 +15,7 @@ use covr_engine::time::{Span, Time};
 use covr_gantry::contract::Simulated;
 use covr_gantry::ideal::IdealMachine;
 use covr_gantry::sim::SimulatedMachine;
-use covr_gantry::sim::parameters::MachineParameters;
-use covr_study::random::Random;
-use covr_study::replay::{ClosedLoop, LinkProfile};
+use covr_gantry::sim::parameters::{MachineParameters, ParameterProblem};
 
 /// What a seed makes.
 pub struct World {
@@ -34,14 +34,15 @@ pub struct World {
 }
 
 impl World {
-    /// The world of this stream of random numbers.
-    pub fn random(random: &mut Random) -> Self {
+    /// The world of this stream of random numbers; v_h is drawn when none is given.
+    pub fn random(random: &mut Random, v_h_mps: Option<f64>) -> Result<Self, ParameterProblem> {
         let arena = Travel {
             min: Floor::new(0.0, 0.0),
             max: Floor::new(random.between(3.0, 6.0), random.between(3.0, 6.0)),
         };
         let travel = arena.shrunk(random.between(0.05, 0.3));
-        let v_h_mps = if random.chance(0.8) { 1.6 } else { 2.0 };
+        let drawn_mps = if random.chance(0.8) { 1.6 } else { 2.0 };
+        let v_h_mps = v_h_mps.unwrap_or(drawn_mps);
         let scenes: Vec<_> = (0..3).map(|_| Arc::new(scene(random, arena, travel))).collect();
         let ideal = random.chance(0.4);
         let machine: Box<dyn Simulated> = if ideal {
@@ -50,7 +51,7 @@ impl World {
         } else {
             let start = travel.min + Planar::new(0.1, 0.1);
             let parameters = MachineParameters { start, ..MachineParameters::paper(travel) };
-            Box::new(SimulatedMachine::new(parameters).expect("the paper's machine is possible"))
+            Box::new(SimulatedMachine::new(parameters)?)
         };
         let delay = random.between(0.0, 0.05);
         let profile = LinkProfile {
@@ -83,7 +84,7 @@ impl World {
         let pose_hz = random.between(75.0, 90.0);
         let control =
             ClosedLoop::new(config, Arc::clone(&scenes[0]), machine, profile, random.fork(), Time::ZERO);
-        Self { arena, scenes, control, v_h_mps, pose_hz, told }
+        Ok(Self { arena, scenes, control, v_h_mps, pose_hz, told })
     }
 }
 

@@ -1,16 +1,16 @@
 //! People at their worst, yet people: never faster than v_h, but they turn in no time, run at the column, crawl,
 //! loiter at objects, come from nowhere, leave, and lose their tracking.
 
+use crate::random::Random;
+use crate::replay::TrueHead;
 use covr_engine::frames::{Floor, Planar, Point, Pose};
 use covr_engine::machine::Travel;
 use covr_engine::observation::{Observation, PersonId, PoseSample};
 use covr_engine::scene::SceneSpec;
 use covr_engine::time::{Span, Time};
-use covr_study::random::Random;
-use covr_study::replay::TrueHead;
 use nalgebra::UnitQuaternion;
 
-use crate::world::somewhere;
+use super::world::somewhere;
 
 /// One of them.
 pub struct Adversary {
