@@ -6,7 +6,13 @@
 //! ```text
 //! p_i(t) ~ [ e^(-dt/tau) p_i(t-dt) + (1 - e^(-dt/tau)) P_i ] * exp(dt * l_i)
 //! l_i = - g(speed) min(gaze_i, c_g)  -  m(speed) [ w min(way_i, c_w) + n d_i ]
+//! belief_i ~ p_i * exp(z_i)
+//! z_i(t) = e^(-dt/tau_z) z_i(t-dt)  -  dt * m(speed) [ h min(heading_i, c_g) + v min(elevation_i, c_v) + u min(way_i, c_w) ]
 //! ```
+//!
+//! The second part is what is seen just now of somebody who walks: the look settles on what is meant only in the last second
+//! or so, and weighs more there than anything before. On people left out of the fit it told the goal of five objects 2 to 3
+//! points more often from 1.5 s before the touch on than the first part alone.
 //!
 //! P is the scenario prior and nothing else; a prior that changes reweighs the belief at once. Evidence is counted a
 //! second, not a pose, as poses that follow one another say the same. It falls with the angle itself: on recorded reaches
@@ -15,6 +21,7 @@
 use nalgebra::{UnitVector3, Vector3};
 
 use super::{Belief, Rule, Sight, View};
+use crate::frames::Planar;
 use crate::time::Time;
 
 /// The numbers of the filter.
@@ -34,6 +41,14 @@ pub struct BayesParameters {
     pub way_cap_rad: f64,
     /// n of somebody who walks, 1/(s m).
     pub nearness_rate: f64,
+    /// tau_z: for so long what was seen counts as just now, s.
+    pub now_secs: f64,
+    /// h: how far off the heading is, just now, 1/(s rad).
+    pub now_heading_rate: f64,
+    /// v: how far off the elevation is, just now, 1/(s rad).
+    pub now_elevation_rate: f64,
+    /// u: how far off the way is, just now, 1/(s rad).
+    pub now_way_rate: f64,
     /// From this speed on somebody walks in full, m/s.
     pub walking_mps: f64,
     /// tau: for so long a mind is made up, s.
@@ -47,13 +62,17 @@ pub struct BayesParameters {
 impl Default for BayesParameters {
     fn default() -> Self {
         Self {
-            gaze_rate_standing: 0.8,
-            gaze_rate_walking: 15.0,
+            gaze_rate_standing: 0.46,
+            gaze_rate_walking: 8.5,
             gaze_cap_rad: 2.5,
             gaze_lead_secs: 0.2,
-            way_rate: 14.0,
+            way_rate: 8.0,
             way_cap_rad: 1.45,
-            nearness_rate: 0.09,
+            nearness_rate: 0.05,
+            now_secs: 0.25,
+            now_heading_rate: 43.0,
+            now_elevation_rate: 8.0,
+            now_way_rate: 10.0,
             walking_mps: 0.8,
             mind_secs: 42.0,
             none_prior: 0.02,
@@ -68,6 +87,8 @@ pub struct Bayes {
     parameters: BayesParameters,
     /// Of each object, and of none at the end; sums to 1.
     probabilities: Vec<f64>,
+    /// z: what is seen of each just now, and of none at the end.
+    now: Vec<f64>,
     /// What they are priors of.
     priors: Vec<f64>,
     seen: Option<Seen>,
@@ -85,7 +106,7 @@ struct Seen {
 impl Bayes {
     /// Nothing seen yet.
     pub const fn new(parameters: BayesParameters) -> Self {
-        Self { parameters, probabilities: Vec::new(), priors: Vec::new(), seen: None }
+        Self { parameters, probabilities: Vec::new(), now: Vec::new(), priors: Vec::new(), seen: None }
     }
 
     /// Bring the priors in: as they are at first, by reweighing later.
@@ -99,6 +120,8 @@ impl Bayes {
             self.priors.clear();
             self.priors.extend(priors);
             self.probabilities.clone_from(&self.priors);
+            self.now.clear();
+            self.now.resize(self.priors.len(), 0.0);
             self.seen = None;
             return;
         }
@@ -147,34 +170,87 @@ impl Rule for Bayes {
             let speed = view.velocity.norm();
             let walks = (speed / p.walking_mps).min(1.0);
             let gaze_rate = p.gaze_rate_standing + (p.gaze_rate_walking - p.gaze_rate_standing) * walks;
-            let evidence_of = |gaze: f64, way: f64| {
-                -gaze_rate * gaze.min(p.gaze_cap_rad) - walks * p.way_rate * way.min(p.way_cap_rad)
-            };
             let stay = (-dt / p.mind_secs).exp();
+            let fades = (-dt / p.now_secs).exp();
+            let looks = elevation_and_level(&ahead);
             for (i, probability) in self.probabilities.iter_mut().enumerate() {
-                let evidence = if let Some(sight) = view.sights.get(i) {
-                    let towards = Vector3::new(sight.offset.x, sight.offset.y, sight.rise_m);
-                    let gaze = angle(towards.dot(&ahead), towards.norm());
-                    let way = angle(view.velocity.dot(sight.offset), speed * sight.offset.norm());
-                    evidence_of(gaze, way) - walks * p.nearness_rate * sight.distance_m
-                } else {
-                    evidence_of(p.none_angle_rad, p.none_angle_rad)
-                };
+                let off = view.sights.get(i).map_or_else(
+                    || Off::NONE_OF_THEM * p.none_angle_rad,
+                    |sight| Off::of(sight, &ahead, looks, view.velocity),
+                );
+                let nearness = view.sights.get(i).map_or(0.0, |sight| p.nearness_rate * sight.distance_m);
+                let way = off.way.min(p.way_cap_rad);
+                let evidence =
+                    -gaze_rate * off.gaze.min(p.gaze_cap_rad) - walks * (p.way_rate * way + nearness);
                 let stayed = stay * *probability + (1.0 - stay) * self.priors[i];
                 *probability = stayed * (dt * evidence).exp();
+                let just_now = p.now_heading_rate * off.heading.min(p.gaze_cap_rad)
+                    + p.now_elevation_rate * off.elevation.min(ELEVATION_CAP_RAD)
+                    + p.now_way_rate * way;
+                self.now[i] = fades * self.now[i] - dt * walks * just_now;
             }
             normalise(&mut self.probabilities, &self.priors);
         }
         self.seen = Some(seen);
         let count = view.sights.len();
+        let most = self.now.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         belief.weights.clear();
-        belief.weights.extend_from_slice(&self.probabilities[..count]);
-        belief.none = self.probabilities[count];
+        belief
+            .weights
+            .extend(self.probabilities.iter().zip(&self.now).map(|(p, now)| p * (now - most).exp()));
+        normalise(&mut belief.weights, &self.probabilities);
+        belief.none = belief.weights.pop().unwrap_or(1.0);
         belief.committed = belief.best().filter(|i| belief.weights[*i] > COMMITTED_FROM);
         let weights = std::mem::take(&mut belief.weights);
         belief.share_by(count, |i| weights[i]);
         belief.weights = weights;
     }
+}
+
+/// How far off an object is from where somebody looks and walks, rad.
+#[derive(Debug, Clone, Copy)]
+struct Off {
+    gaze: f64,
+    heading: f64,
+    elevation: f64,
+    way: f64,
+}
+
+impl Off {
+    /// In shares of the angle that "none of them" is off: to no side more than to another, up or down little.
+    const NONE_OF_THEM: Self = Self { gaze: 1.0, heading: 1.0, elevation: 0.25, way: 1.0 };
+
+    fn of(sight: &Sight, ahead: &UnitVector3<f64>, looks: (f64, f64), velocity: Planar) -> Self {
+        let towards = Vector3::new(sight.offset.x, sight.offset.y, sight.rise_m);
+        let away_m = sight.offset.norm();
+        let view = Planar::new(ahead.x, ahead.y);
+        let (elevation, level) = looks;
+        Self {
+            gaze: angle(towards.dot(ahead), towards.norm()),
+            heading: angle(view.dot(sight.offset), level * away_m),
+            elevation: (sight.rise_m.atan2(away_m) - elevation).abs(),
+            way: angle(velocity.dot(sight.offset), velocity.norm() * away_m),
+        }
+    }
+}
+
+impl std::ops::Mul<f64> for Off {
+    type Output = Self;
+
+    fn mul(self, rad: f64) -> Self {
+        Self {
+            gaze: self.gaze * rad,
+            heading: self.heading * rad,
+            elevation: self.elevation * rad,
+            way: self.way * rad,
+        }
+    }
+}
+
+/// The elevation of a direction, rad, and how much of it is level.
+fn elevation_and_level(direction: &UnitVector3<f64>) -> (f64, f64) {
+    let level = direction.x.hypot(direction.y);
+    (direction.z.atan2(level), level)
 }
 
 /// The angle of a scalar product, rad; 0 where there is no direction: what is here is looked at.
@@ -194,6 +270,8 @@ fn normalise(probabilities: &mut [f64], priors: &[f64]) {
 
 /// The visitor is taken to mean what is more probable than all else together.
 const COMMITTED_FROM: f64 = 0.5;
+/// An elevation farther off says no more, rad.
+const ELEVATION_CAP_RAD: f64 = 1.0;
 /// One pose is evidence of no longer than this, s.
 const LONGEST_SECS: f64 = 0.1;
 /// A turn of the head shows after about this long, s.
