@@ -235,9 +235,8 @@ impl Following {
             let in_time = |secs: f64| self.planner.arrival_secs() + STILL_BEFORE_TOUCH_SECS < secs;
             // The hand will be there before the column: nearly there and still serves, nearly there and moving does not.
             let too_late = wish.and_then(|w| w.touch_secs).is_some_and(|secs| !in_time(secs));
-            let settles = too_late && here.distance_m(target) < NEARLY_M;
             let errand = Errand {
-                target: if settles { here } else { target },
+                target: if too_late { nearly(here, target) } else { target },
                 speed_cap_mps: soft_start_mps,
                 inside,
                 elapsed_secs: period.secs(),
@@ -376,6 +375,12 @@ impl Visitor {
     }
 }
 
+/// As near as still serves: where it is, or short of the target on the way there.
+fn nearly(here: Floor, target: Floor) -> Floor {
+    let way = here - target;
+    if way.norm() < NEARLY_M { here } else { way.unit().map_or(target, |back| target + back * SHORT_M) }
+}
+
 /// The paper's cone: 45 cm around a person, shrinking smoothly to 20 cm as the head comes near an object.
 fn cone_radius_m(nearest_object_m: f64) -> f64 {
     let share = ((nearest_object_m - CONE_SMALL_WITHIN_M) / (CONE_LARGE_FROM_M - CONE_SMALL_WITHIN_M))
@@ -387,9 +392,11 @@ fn cone_radius_m(nearest_object_m: f64) -> f64 {
 const LEAST_CHANCE: f64 = 0.01;
 const MOST_CHANCES: usize = 6;
 /// A prop that a hand meets has stood still for so long, s.
-const STILL_BEFORE_TOUCH_SECS: f64 = 0.25;
+const STILL_BEFORE_TOUCH_SECS: f64 = 0.4;
 /// Nearer than this, and still, it serves: inside what the evaluation asks, m.
 const NEARLY_M: f64 = 0.085;
+/// So far short of the target it comes to rest when it would be late there, m.
+const SHORT_M: f64 = 0.07;
 /// A visitor who is served keeps being served against one who is this much stronger.
 const CONSTANCY: f64 = 0.1;
 const CONE_LARGE_M: f64 = 0.45;
