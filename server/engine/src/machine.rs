@@ -76,7 +76,7 @@ pub struct MachineReport {
 impl AxisLimits {
     /// The paper's machine: over 1.1 m/s on long moves, and 0.5 m/s on average under 0.8 m, from which 1.25 m/s2 follows.
     pub const PAPER: Self =
-        Self { speed_mps: 1.1, acceleration_mps2: 1.25, braking_mps2: 2.5, jerk_mps3: 60.0 };
+        Self { speed_mps: 1.1, acceleration_mps2: 1.25, braking_mps2: 2.5, jerk_mps3: 80.0 };
 }
 
 impl Limits {

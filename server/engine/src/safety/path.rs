@@ -283,7 +283,7 @@ mod tests {
     fn braking_from_full_speed_takes_what_the_formula_says() {
         let path = AxisPath::brake(AxisState { p: 0.0, v: 1.1, a: 0.0 }, &LIMITS);
         // v / a + a / J, and v/2 of that as distance: a symmetrical trapezoid of deceleration.
-        let duration = 1.1 / 2.5 + 2.5 / 60.0;
+        let duration = 1.1 / 2.5 + 2.5 / 80.0;
         assert!((path.duration_secs() - duration).abs() < 1e-12);
         assert!((path.at(9.0).p - 1.1 * duration / 2.0).abs() < 1e-9);
     }

@@ -285,10 +285,10 @@ mod tests {
 
     #[test]
     fn towards_somebody_it_needs_what_walking_and_braking_take() {
-        // From 1.1 m/s: reaction 0.05 s and a brake of 1.1 / 2.5 + 2.5 / 60 s, 20 ms of age, 1.6 m/s of walking.
-        let brake_secs = 0.05 + 1.1 / 2.5 + 2.5 / 60.0;
-        let braking_m = 1.1 * 0.05 + 1.1 * (1.1 / 2.5 + 2.5 / 60.0) / 2.0;
-        let needed = 0.35 + 1.6 * (brake_secs + 0.02) + braking_m + 0.015;
+        // From 1.1 m/s: reaction 0.05 s and a brake of 1.1 / 2.5 + 2.5 / 80 s, 20 ms of age, 1.6 m/s of walking.
+        let brake_secs = 0.05 + 1.1 / 2.5 + 2.5 / 80.0;
+        let braking_m = 1.1 * 0.05 + 1.1 * (1.1 / 2.5 + 2.5 / 80.0) / 2.0;
+        let needed = 0.35 + 1.6 * (brake_secs + 0.02) + braking_m + 0.012;
         assert!(verdict(Planar::new(1.1, 0.0), needed + 0.01, |_| ()).is_ok());
         let conflict = verdict(Planar::new(1.1, 0.0), needed - 0.01, |_| ()).unwrap_err();
         assert_eq!(conflict.with, Obstacle::Person(PersonId(1)));

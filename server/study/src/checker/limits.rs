@@ -173,10 +173,10 @@ mod tests {
 
     #[test]
     fn jerk_is_the_change_of_acceleration_between_ticks() {
-        // Accelerations 0, 0.6, 1.2 m/s2 at 10 ms: 60 m/s3, the limit. 0, 0.7: 70 m/s3.
+        // Accelerations 0, 0.6, 1.2 m/s2 at 10 ms: 60 m/s3, under the limit of 80. 0, 0.9: 90 m/s3.
         assert_eq!(run(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.006), (0.0, 0.018)]), []);
-        let over = run(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.007)]);
-        assert!(matches!(over[..], [(Quantity::Jerk, found)] if (found - 70.0).abs() < 1e-6), "{over:?}");
+        let over = run(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.009)]);
+        assert!(matches!(over[..], [(Quantity::Jerk, found)] if (found - 90.0).abs() < 1e-6), "{over:?}");
     }
 
     #[test]

@@ -139,7 +139,7 @@ mod tests {
     fn the_terms_are_those_of_the_formula() {
         let threat = somebody(Floor::new(3.5, 2.0), 0.02);
         let found = terms(&State::moving(Floor::new(2.0, 2.0), Planar::new(1.1, 0.0)), &threat);
-        let brake_secs = 1.1 / 2.5 + 2.5 / 60.0;
+        let brake_secs = 1.1 / 2.5 + 2.5 / 80.0;
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-9, "{a} against {b}");
         close(found.radius_m, 0.35);
         close(found.reaction_m, (1.1 + 1.6) * 0.05);
