@@ -16,6 +16,7 @@ use covr_gantry::contract::Gantry;
 use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::MachineParameters;
 use covr_wire::dashboard::MachineShape;
+use covr_wire::reason::last_run;
 use covr_wire::scene::parse_scene;
 use tokio::net::TcpListener;
 use tokio::sync::{Semaphore, watch};
@@ -79,8 +80,8 @@ impl Server {
                 "the last run was interrupted in a session"
             );
         }
-        if let Some(because) = &left_over.latched_because {
-            tracing::warn!(because, "the last run ended in a latched stop; reset it to go on");
+        if let Some(record) = &left_over.latched_because {
+            tracing::warn!("{}; reset it to go on", last_run(record));
         }
         let active = active_scene(&store, left_over.active_scene).await?;
         let priors = store.priors_in_force().await?;
@@ -274,7 +275,7 @@ pub async fn stop_at_signal(app: Arc<App>) {
     while pressed.recv().await.is_some() {
         let received_at = std::time::Instant::now();
         let asker = crate::app::Asker { by: "signal", author: "SIGUSR1".into() };
-        match app.stop(&asker, StopLaneName::Signal, None, received_at).await {
+        match app.stop(&asker, StopLaneName::Signal, Some("SIGUSR1".into()), received_at).await {
             Ok(to_drive) => tracing::warn!(to_drive_micros = to_drive.as_micros() as u64, "SIGUSR1: stopped"),
             Err(why) => tracing::error!(%why, "SIGUSR1: the stop was not acknowledged"),
         }

@@ -3,6 +3,7 @@
 use crate::frames::{Floor, Planar, Pose, Room};
 use crate::mode::{Mode, RequestKind};
 use crate::observation::PersonId;
+use crate::reason::Reason;
 use crate::safety::separation::Terms;
 use crate::time::Time;
 
@@ -18,7 +19,7 @@ pub struct Snapshot {
     /// Why the machine is stopped, in a stop.
     pub stop: Option<StopCause>,
     /// For each request: none if it would be accepted now, else why not.
-    pub refusals: Vec<(RequestKind, Option<String>)>,
+    pub refusals: Vec<(RequestKind, Option<Reason>)>,
     /// Every safety rule, in the order of their numbers.
     pub rules: Vec<RuleState>,
     /// The column.
@@ -42,10 +43,8 @@ pub struct RuleId(pub u8);
 pub struct StopCause {
     /// The rule.
     pub rule: RuleId,
-    /// In plain words: what happened.
-    pub reason: String,
-    /// In plain words: what clears it.
-    pub clears_when: String,
+    /// What happened. What clears it is the same for every stop of a rule.
+    pub reason: Reason,
     /// When.
     pub since: Time,
 }
@@ -70,8 +69,8 @@ pub struct RuleState {
     pub rule: RuleId,
     /// How it stands.
     pub status: RuleStatus,
-    /// In plain words, with values and units.
-    pub reason: String,
+    /// Why.
+    pub reason: Reason,
     /// Since when it has stood so.
     pub since: Time,
 }

@@ -4,14 +4,15 @@
 //! (a slow reader skips generations), every `event`, and an `answer` to each request. Nothing is ever patched.
 
 mod convert;
-mod reason;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
 pub use convert::{Surroundings, request_name, rule_title};
+pub(crate) use convert::{clears_when, name_of};
 
+use crate::reason::Reason;
 use crate::scene::SceneDocument;
 
 /// What a dashboard says.
@@ -92,6 +93,8 @@ pub enum ToDashboard {
         outcome: Outcome,
         /// Why it was refused, or what it did, in plain words.
         detail: String,
+        /// The same as an id and its values; null for a message that was not understood.
+        why: Option<Reason>,
         /// For a stop: from the server's reception to the braking command written to the drive, microseconds.
         to_drive_micros: Option<u64>,
     },
@@ -185,8 +188,10 @@ pub struct Snapshot {
 pub struct RequestState {
     /// `home`, `arm`, `disarm`, `stop` or `reset`.
     pub request: String,
-    /// Why it would be refused; null if it would be accepted.
+    /// Why it would be refused, in plain words; null if it would be accepted.
     pub refused_because: Option<String>,
+    /// The same as an id and its values.
+    pub why: Option<Reason>,
 }
 
 /// What stopped the machine.
@@ -196,7 +201,9 @@ pub struct StopCause {
     pub rule: String,
     /// What happened, in plain words.
     pub reason: String,
-    /// What clears it, in plain words.
+    /// The same as an id and its values.
+    pub why: Reason,
+    /// What clears it, in plain words; the same for every stop of a rule.
     pub clears_when: String,
     /// When, server time.
     #[ts(type = "number")]
@@ -228,6 +235,8 @@ pub struct RuleState {
     pub status: RuleStatus,
     /// In plain words, with values and units.
     pub reason: String,
+    /// The same as an id and its values.
+    pub why: Reason,
     /// Since when, server time.
     #[ts(type = "number")]
     pub since_micros: i64,
@@ -254,6 +263,8 @@ pub struct Column {
     pub activity: Activity,
     /// Why it does that, in plain words, with values and units.
     pub reason: String,
+    /// The same, clause by clause, each as an id and its values.
+    pub why: Vec<Reason>,
     /// Where it would go from here if everybody stood still, 0.1 s apart; empty when it goes nowhere.
     pub planned_path_m: Vec<[f64; 2]>,
     /// Motor currents, A.
@@ -451,7 +462,7 @@ pub struct Event {
     pub kind: String,
     /// In plain words.
     pub summary: String,
-    /// Particulars, by kind.
+    /// Particulars, by kind; `why` is a reason as an id and its values.
     #[ts(type = "unknown")]
     pub detail: serde_json::Value,
 }

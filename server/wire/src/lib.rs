@@ -8,6 +8,7 @@ pub mod convention;
 pub mod dashboard;
 pub mod examples;
 pub mod link;
+pub mod reason;
 pub mod records;
 mod sample;
 pub mod scene;

@@ -3,6 +3,7 @@
 use covr_engine::frames::{Floor, Planar, Point, Pose};
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::observation::PersonId;
+use covr_engine::reason::Reason;
 use covr_engine::safety::separation::Terms;
 use covr_engine::scene::Scene;
 use covr_engine::snapshot::{
@@ -85,17 +86,12 @@ pub(crate) fn snapshot() -> Snapshot {
         at,
         mode: Mode::ProtectiveStop,
         mode_since: at,
-        stop: Some(StopCause {
-            rule: RuleId(2),
-            reason: "the pose is 0.6 s old".into(),
-            clears_when: "the headset is tracked again for 1 s".into(),
-            since: at,
-        }),
-        refusals: vec![(RequestKind::Reset, Some("nothing is latched".into()))],
+        stop: Some(StopCause { rule: RuleId(2), reason: Reason::PoseTooOld(PersonId(3), 0.6), since: at }),
+        refusals: vec![(RequestKind::Reset, Some(Reason::NothingToReset))],
         rules: vec![RuleState {
             rule: RuleId(1),
             status: RuleStatus::Clear,
-            reason: String::new(),
+            reason: Reason::InsideTravel,
             since: at,
         }],
         column: ColumnState {

@@ -20,6 +20,7 @@ export type {
   Person,
   PriorChange,
   PropDocument,
+  Reason,
   RecordedFrame,
   RequestState,
   RuleState,

@@ -3,6 +3,7 @@ import { createMemo, createResource, createSignal, For, Show, type JSX } from "s
 import { readConfig } from "../api/http";
 import type { ConfigKey } from "../api/types";
 import { words } from "../i18n";
+import { troubleOf } from "../lib/trouble";
 
 /** The panel; read when it is opened, and again on request. */
 export function Configuration(): JSX.Element {
@@ -19,7 +20,7 @@ export function Configuration(): JSX.Element {
       <p>{say().intro}</p>
       <Show when={config.error !== undefined}>
         <p class="answer refused" role="alert" data-testid="config-trouble">
-          {say().notRead} <span lang="en">{messageOf(config.error)}</span>
+          {say().notRead} {troubleOf(config.error)}
         </p>
         <button type="button" onClick={() => void refetch()}>
           {say().again}
@@ -128,8 +129,4 @@ function variableOf(name: string): string {
 
 function textOf(value: unknown): string {
   return typeof value === "string" ? (value === "" ? '""' : value) : JSON.stringify(value).replaceAll(",", ", ");
-}
-
-function messageOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

@@ -8,6 +8,7 @@ use axum::body::Bytes;
 use axum::extract::{Query, State};
 use covr_engine::frames::Floor;
 use covr_wire::answers::PriorChange;
+use covr_wire::reason::Reason;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use ts_rs::TS;
@@ -80,7 +81,7 @@ async fn change(
     let done = app.stage.change_priors(&app.control, &app.store, &author.0, &wanted).await;
     let changes = done.map_err(|why| match why {
         PriorsRefused::Invalid(bad) => invalid(bad),
-        PriorsRefused::Refused(detail) => Problem::refused(detail),
+        PriorsRefused::Refused(why) => Problem::refused(Reason::new(&why, &app.persons.names())),
         PriorsRefused::NotDelivered(why) => why.into(),
         PriorsRefused::Store(why) => why.into(),
     })?;
@@ -124,7 +125,7 @@ async fn preview(State(app): State<Arc<App>>, body: Bytes) -> Result<Json<Priors
             objects: objects.collect(),
         }
     });
-    found.await.map(Json).map_err(|_| Problem::unavailable("the preview was not finished"))
+    found.await.map(Json).map_err(|_| Problem::unavailable(Reason::PreviewUnfinished))
 }
 
 /// Who changed which prior when, newest first.

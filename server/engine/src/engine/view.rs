@@ -29,7 +29,7 @@ impl Engine {
         let conditions = self.conditions(now);
         let refusal = |kind| match mode::respond(self.mode, kind, &conditions) {
             Response::Go(_) => (kind, None),
-            Response::AlreadySo(why) => (kind, Some(why.to_owned()).filter(|_| kind != RequestKind::Stop)),
+            Response::AlreadySo(why) => (kind, Some(why).filter(|_| kind != RequestKind::Stop)),
             Response::Refuse(why) => (kind, Some(why)),
         };
         Snapshot {

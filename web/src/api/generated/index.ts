@@ -40,6 +40,7 @@ export type { Prediction } from "./Prediction";
 export type { PriorChange } from "./PriorChange";
 export type { PropAt } from "./PropAt";
 export type { PropDocument } from "./PropDocument";
+export type { Reason } from "./Reason";
 export type { RecordedColumn } from "./RecordedColumn";
 export type { RecordedFrame } from "./RecordedFrame";
 export type { RecordedFrames } from "./RecordedFrames";

@@ -1,6 +1,7 @@
 /** Words of the area `live`. */
 export const live = {
   title: "Live",
+  betweenClauses: "; ",
   // What the column is about.
   column: "Column",
   activities: {

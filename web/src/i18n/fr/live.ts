@@ -1,6 +1,7 @@
 /** Mots du domaine `live`. */
 export const live = {
   title: "Direct",
+  betweenClauses: " ; ",
   // Ce que fait la colonne.
   column: "Colonne",
   activities: {
