@@ -19,6 +19,7 @@ use covr_wire::dashboard::MachineShape;
 use covr_wire::reason::last_run;
 use covr_wire::scene::parse_scene;
 use tokio::net::TcpListener;
+use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::{Semaphore, watch};
 use tokio::task::JoinHandle;
 
@@ -252,7 +253,6 @@ impl Server {
 
 /// SIGINT or SIGTERM; the reason to end.
 pub async fn told_by_signal() -> String {
-    use tokio::signal::unix::{SignalKind, signal};
     let (Ok(mut interrupt), Ok(mut terminate)) =
         (signal(SignalKind::interrupt()), signal(SignalKind::terminate()))
     else {
@@ -265,13 +265,13 @@ pub async fn told_by_signal() -> String {
     }
 }
 
-/// Press the stop at each SIGUSR1, for as long as the server runs.
-pub async fn stop_at_signal(app: Arc<App>) {
-    use tokio::signal::unix::{SignalKind, signal};
-    let Ok(mut pressed) = signal(SignalKind::user_defined1()) else {
-        tracing::error!("cannot listen for SIGUSR1");
-        return;
-    };
+/// Listen for SIGUSR1 from now on.
+pub fn stop_signal() -> std::io::Result<Signal> {
+    signal(SignalKind::user_defined1())
+}
+
+/// Press the stop at each of these signals, for as long as the server runs.
+pub async fn stop_at_signal(app: Arc<App>, mut pressed: Signal) {
     while pressed.recv().await.is_some() {
         let received_at = std::time::Instant::now();
         let asker = crate::app::Asker { by: "signal", author: "SIGUSR1".into() };
