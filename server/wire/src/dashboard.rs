@@ -265,7 +265,8 @@ pub struct Column {
     pub reason: String,
     /// The same, clause by clause, each as an id and its values.
     pub why: Vec<Reason>,
-    /// Where it would go from here if everybody stood still, 0.1 s apart; empty when it goes nowhere.
+    /// Where it would go from here if everybody walked on for a moment and then stood, 0.1 s apart; empty when it goes
+    /// nowhere.
     pub planned_path_m: Vec<[f64; 2]>,
     /// Motor currents, A.
     pub current_amps: [f64; 2],

@@ -43,7 +43,8 @@ pub struct PriorsPreview {
     pub serves: Option<u32>,
     /// Id of the object that the rule would be committed to.
     pub committed: Option<String>,
-    /// Where the column would go if everybody stood still, 0.1 s apart; empty when it would go nowhere.
+    /// Where the column would go if everybody walked on for a moment and then stood, 0.1 s apart; empty when it would go
+    /// nowhere.
     pub planned_path_m: Vec<[f64; 2]>,
     /// Every object of the active scene, in its order.
     pub objects: Vec<ObjectPreview>,

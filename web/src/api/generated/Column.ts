@@ -47,7 +47,8 @@ reason: string,
  */
 why: Array<Reason>, 
 /**
- * Where it would go from here if everybody stood still, 0.1 s apart; empty when it goes nowhere.
+ * Where it would go from here if everybody walked on for a moment and then stood, 0.1 s apart; empty when it goes
+ * nowhere.
  */
 planned_path_m: Array<[number, number]>, 
 /**
