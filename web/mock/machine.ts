@@ -2,7 +2,7 @@
  * A machine to look at: plausible numbers for the dashboard's development and tests. It makes no claim to be safe or
  * true; the real one is the server's.
  */
-import type { MachineRequest, Mode, ObjectState, Outcome, Person, PriorPreview, Reason, SceneDocument, Snapshot, StopCause, WireEvent } from "../src/api/types";
+import type { Decision, MachineRequest, Mode, ObjectState, Outcome, Person, PriorPreview, Reason, SceneDocument, Snapshot, StopCause, WireEvent } from "../src/api/types";
 
 /** What the mock's owner may set up. */
 export interface MockOptions {
@@ -200,6 +200,8 @@ export class MockMachine {
         committed: this.#mode === "following" ? best.id : null,
         activity: this.#mode === "following" ? (speed < 0.02 ? "in_place" : "approaching") : this.#mode === "disarmed" ? "released" : this.#mode === "homing" ? "homing" : this.#mode === "ready" ? "ready" : "stopped",
         reason: this.#mode === "following" ? `for Ada, ${best.id}: weight ${best.weight.toFixed(2)}` : "the drive is released",
+        decision: this.#mode === "following" ? this.#decision(best) : null,
+        arrival_secs: this.#mode === "following" ? best.arrival_secs : null,
         why: this.#mode === "following" ? [{ id: "serves", person: "Ada", object: best.id, weight: best.weight, probability: best.probability }] : [{ id: "drive_released" }],
         planned_path_m: target === null ? [] : this.#pathTo(target),
         current_amps: [0.8 + speed, 0.6 + speed],
@@ -215,7 +217,10 @@ export class MockMachine {
         },
       ],
       objects,
-      intention_rule: "paper",
+      intention_rule: "bayes",
+      standing: "in-time",
+      motion: "planner",
+      none_probability: 0.1,
       control_loop: {
         rate_hz: 250,
         steps: Math.round(this.#atSecs * 250),
@@ -263,6 +268,15 @@ export class MockMachine {
       case "reset":
         return latched || this.#mode === "faulted" ? null : [{ id: "nothing_to_reset" }, "nothing to reset"];
     }
+  }
+
+  #decision(best: ObjectState): Decision {
+    return {
+      belief: [{ id: "looks_at", person: "Ada", object: best.id, angle_rad: best.angle_rad ?? 0, distance_m: best.distance_m ?? 0 }],
+      place: [{ id: "at_object", object: best.id, probability: best.probability }],
+      route: [{ id: "straight_on" }],
+      arrival: [{ id: "at_its_limits" }],
+    };
   }
 
   #inTheWay(required: number): Told {
@@ -315,10 +329,12 @@ export class MockMachine {
         column_place_m: place,
         arrival_secs: Math.hypot(place[0] - this.#column[0], place[1] - this.#column[1]) / 0.9,
         touch_secs: Math.max(0, away - 0.6) / 0.7,
+        angle_rad: Math.abs(Math.atan2(Math.sin(Math.atan2(dy, dx) - person.yaw_rad), Math.cos(Math.atan2(dy, dx) - person.yaw_rad))),
+        distance_m: away,
       };
     });
     const sum = rows.reduce((total, row) => total + row.weight, 0);
-    return rows.map((row) => ({ ...row, probability: sum > 0 ? row.weight / sum : 0 }));
+    return rows.map((row) => ({ ...row, probability: sum > 0 ? (0.9 * row.weight) / sum : 0 }));
   }
 
   #best(objects: readonly ObjectState[]): ObjectState {

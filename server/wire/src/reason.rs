@@ -3,6 +3,7 @@
 
 mod column;
 mod convert;
+mod decision;
 mod examples;
 mod latched;
 mod words;
@@ -11,6 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
+pub use decision::decision;
 pub use latched::{last_run, latch_record};
 
 use crate::dashboard::Mode;
@@ -387,4 +389,56 @@ pub enum Reason {
     GoesAround,
     /// The column: in place.
     StandsThere,
+    /// Belief: what speaks for the first object.
+    LooksAt {
+        /// Name.
+        person: String,
+        /// Its id.
+        object: String,
+        /// From the view axis to it, rad.
+        angle_rad: f64,
+        /// From the head to its surface, m.
+        distance_m: f64,
+    },
+    /// Belief: most likely none of them.
+    NonePlain {
+        /// Name.
+        person: String,
+        /// Share, 0 to 1.
+        probability: f64,
+    },
+    /// Place: that of the most probable object.
+    AtObject {
+        /// Its id.
+        object: String,
+        /// Share, 0 to 1.
+        probability: f64,
+    },
+    /// Place: that of another object, from which more can be reached in time.
+    AtAnother {
+        /// Its id.
+        object: String,
+    },
+    /// Place: between two objects, from which either can be reached in time.
+    Between {
+        /// Id of the first.
+        object: String,
+        /// Id of the second.
+        other: String,
+    },
+    /// Place: the mean of the objects' places, weighted by the belief.
+    AtMean,
+    /// Place: among several objects, from which most can be reached in time.
+    AmongObjects,
+    /// Route: straight.
+    StraightOn,
+    /// Arrival: as soon as its limits allow.
+    AtItsLimits,
+    /// Arrival: people in the way and slower beginnings cost time.
+    PeopleCost {
+        /// How much, s.
+        secs: f64,
+    },
+    /// Arrival: not as far ahead as the planner looks.
+    NotForeseen,
 }

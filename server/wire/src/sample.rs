@@ -77,6 +77,8 @@ pub(crate) fn snapshot() -> Snapshot {
         column_place: Floor::new(if id == "kettle" { 0.9 } else { 3.0 }, 3.0),
         arrival_secs: 2.0,
         touch_secs,
+        angle_rad: touch_secs.map(|_| 0.07),
+        distance_m: touch_secs.map(|_| 1.2),
     };
     let looking = Pose {
         position: Point::new(2.0, 1.0, 1.7),
@@ -106,12 +108,16 @@ pub(crate) fn snapshot() -> Snapshot {
             activity: Activity::Stopped,
             held_by: None,
             goes_around: false,
+            arrival_secs: Some(2.0),
+            least_arrival_secs: Some(1.6),
             current_amps: [0.5, 0.4],
             homed: true,
         },
         persons: vec![person(3, Some(looking)), person(8, None)],
         objects: vec![object("kettle", 0.4, Some(1.5)), object("lamp", 0.6, None)],
         intention_rule: "paper",
+        standing: "mean",
         motion: "proxy",
+        none_probability: 0.0,
     }
 }

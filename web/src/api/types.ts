@@ -7,6 +7,7 @@ export type {
   ConfigInForce,
   ConfigKey,
   ControlLoop,
+  Decision,
   Event as WireEvent,
   FromDashboard,
   KeepOutDocument,

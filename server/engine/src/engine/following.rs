@@ -340,6 +340,15 @@ impl Following {
         self.motion
     }
 
+    pub fn standing(&self) -> StandingName {
+        self.standing
+    }
+
+    /// How long the planner's present plan takes, s; none with another motion, and where it does not arrive.
+    pub fn arrives_in_secs(&self) -> Option<f64> {
+        self.planner.arrives_in_secs().filter(|_| self.motion == MotionName::Planner)
+    }
+
     /// The belief about the served visitor.
     pub fn belief(&self) -> Option<&Belief> {
         self.served_visitor().map(|v| &v.belief)

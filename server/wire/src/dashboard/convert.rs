@@ -17,7 +17,7 @@ use super::{
     Person, RequestState, RuleState, RuleStatus, SeparationTerm, SeparationTerms, Snapshot, StopCause,
     ToDashboard,
 };
-use crate::reason::Reason;
+use crate::reason::{self, Reason};
 
 /// What a snapshot holds that the engine does not know.
 #[derive(Debug, Clone)]
@@ -84,6 +84,9 @@ impl Snapshot {
             persons: state.persons.iter().map(|person| self::person(person, around.names)).collect(),
             objects: state.objects.iter().map(Into::into).collect(),
             intention_rule: state.intention_rule.into(),
+            standing: state.standing.into(),
+            motion: state.motion.into(),
+            none_probability: state.none_probability,
             control_loop: around.control_loop,
             clients: around.clients,
             scene_id: around.scene_id,
@@ -226,6 +229,8 @@ impl From<&engine::ObjectState> for Object {
             column_place_m: floor(object.column_place),
             arrival_secs: object.arrival_secs,
             touch_secs: object.touch_secs,
+            angle_rad: object.angle_rad,
+            distance_m: object.distance_m,
         }
     }
 }
@@ -298,6 +303,8 @@ fn column(state: &engine::Snapshot, names: &BTreeMap<PersonId, String>) -> Colum
         activity: column.activity.into(),
         reason: sentence(&why),
         why,
+        decision: reason::decision(state, names),
+        arrival_secs: column.arrival_secs,
         planned_path_m: Vec::new(),
         current_amps: column.current_amps,
         homed: column.homed,

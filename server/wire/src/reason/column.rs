@@ -100,6 +100,16 @@ fn moves(column: &ColumnState, names: &BTreeMap<PersonId, String>, clauses: &mut
     }
 }
 
+/// Why it takes the way that it takes.
+pub(super) fn route(column: &ColumnState, names: &BTreeMap<PersonId, String>) -> Vec<Reason> {
+    match (&column.held_by, column.activity) {
+        (_, Activity::InPlace) => vec![Reason::StandsThere],
+        (Some(held), _) => vec![holds(held, names)],
+        (None, _) if column.goes_around => vec![Reason::GoesAround],
+        (None, _) => vec![Reason::StraightOn],
+    }
+}
+
 fn holds(held: &HeldBy, names: &BTreeMap<PersonId, String>) -> Reason {
     let (distance_m, required_m) = (held.distance_m, held.required_m);
     match &held.holder {

@@ -116,6 +116,22 @@ impl Reason {
             Self::HeldShort { left_m: 0.834 },
             Self::GoesAround,
             Self::StandsThere,
+            Self::LooksAt {
+                person: "Ada".into(),
+                object: "kettle".into(),
+                angle_rad: 0.0698,
+                distance_m: 1.234,
+            },
+            Self::NonePlain { person: "Ada".into(), probability: 0.62 },
+            Self::AtObject { object: "kettle".into(), probability: 0.62 },
+            Self::AtAnother { object: "lamp".into() },
+            Self::Between { object: "kettle".into(), other: "lamp".into() },
+            Self::AtMean,
+            Self::AmongObjects,
+            Self::StraightOn,
+            Self::AtItsLimits,
+            Self::PeopleCost { secs: 0.42 },
+            Self::NotForeseen,
         ]
     }
 }

@@ -158,6 +158,26 @@ impl fmt::Display for Reason {
             Self::HeldShort { left_m } => write!(f, "held {left_m:.2} m short"),
             Self::GoesAround => write!(f, "around somebody in the way"),
             Self::StandsThere => write!(f, "stands there"),
+            Self::LooksAt { person, object, angle_rad, distance_m } => {
+                let degrees = angle_rad.to_degrees();
+                write!(f, "{person} looks {degrees:.0}° beside {object}, {distance_m:.2} m away")
+            }
+            Self::NonePlain { person, probability } => {
+                write!(f, "most likely none of them ({:.0} %): {person} looks around", probability * 100.0)
+            }
+            Self::AtObject { object, probability } => {
+                write!(f, "at {object}, the most probable ({:.0} %)", probability * 100.0)
+            }
+            Self::AtAnother { object } => write!(f, "at {object}: from there more can be reached in time"),
+            Self::Between { object, other } => {
+                write!(f, "between {object} and {other}: from there either can be reached in time")
+            }
+            Self::AtMean => write!(f, "the mean of the objects' places, weighted by the belief"),
+            Self::AmongObjects => write!(f, "among several objects: from there most can be reached in time"),
+            Self::StraightOn => write!(f, "straight, nobody in the way"),
+            Self::AtItsLimits => write!(f, "as soon as its limits allow"),
+            Self::PeopleCost { secs } => write!(f, "people on the way and a soft start cost {secs:.1} s"),
+            Self::NotForeseen => write!(f, "farther off than the planner looks ahead"),
         }
     }
 }

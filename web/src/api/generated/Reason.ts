@@ -272,4 +272,52 @@ speed_mps: number, } | { "id": "held_short",
 /**
  * Still to go, m.
  */
-left_m: number, } | { "id": "goes_around" } | { "id": "stands_there" };
+left_m: number, } | { "id": "goes_around" } | { "id": "stands_there" } | { "id": "looks_at", 
+/**
+ * Name.
+ */
+person: string, 
+/**
+ * Its id.
+ */
+object: string, 
+/**
+ * From the view axis to it, rad.
+ */
+angle_rad: number, 
+/**
+ * From the head to its surface, m.
+ */
+distance_m: number, } | { "id": "none_plain", 
+/**
+ * Name.
+ */
+person: string, 
+/**
+ * Share, 0 to 1.
+ */
+probability: number, } | { "id": "at_object", 
+/**
+ * Its id.
+ */
+object: string, 
+/**
+ * Share, 0 to 1.
+ */
+probability: number, } | { "id": "at_another", 
+/**
+ * Its id.
+ */
+object: string, } | { "id": "between", 
+/**
+ * Id of the first.
+ */
+object: string, 
+/**
+ * Id of the second.
+ */
+other: string, } | { "id": "at_mean" } | { "id": "among_objects" } | { "id": "straight_on" } | { "id": "at_its_limits" } | { "id": "people_cost", 
+/**
+ * How much, s.
+ */
+secs: number, } | { "id": "not_foreseen" };

@@ -17,6 +17,7 @@ export type { ConfigKey } from "./ConfigKey";
 export type { ConfigOrigin } from "./ConfigOrigin";
 export type { ControlLoop } from "./ControlLoop";
 export type { Convention } from "./Convention";
+export type { Decision } from "./Decision";
 export type { ErrorCode } from "./ErrorCode";
 export type { Event } from "./Event";
 export type { FromClient } from "./FromClient";

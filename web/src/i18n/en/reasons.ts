@@ -102,4 +102,16 @@ export const reasons: ReasonSentences = {
   held_short: ({ left_m }, { number }) => `held ${number(left_m, 2)} m short`,
   goes_around: () => "around somebody in the way",
   stands_there: () => "stands there",
+  looks_at: ({ person, object, angle_rad, distance_m }, { number, object: label }) =>
+    `${person} looks ${number((angle_rad * 180) / Math.PI, 0)}° beside ${label(object)}, ${number(distance_m, 2)} m away`,
+  none_plain: ({ person, probability }, { number }) => `most likely none of them (${number(probability * 100, 0)} %): ${person} looks around`,
+  at_object: ({ object, probability }, { number, object: label }) => `at ${label(object)}, the most probable (${number(probability * 100, 0)} %)`,
+  at_another: ({ object }, { object: label }) => `at ${label(object)}: from there more can be reached in time`,
+  between: ({ object, other }, { object: label }) => `between ${label(object)} and ${label(other)}: from there either can be reached in time`,
+  at_mean: () => "the mean of the objects' places, weighted by the belief",
+  among_objects: () => "among several objects: from there most can be reached in time",
+  straight_on: () => "straight, nobody in the way",
+  at_its_limits: () => "as soon as its limits allow",
+  people_cost: ({ secs }, { number }) => `people on the way and a soft start cost ${number(secs, 1)} s`,
+  not_foreseen: () => "farther off than the planner looks ahead",
 };

@@ -102,4 +102,16 @@ export const reasons: ReasonSentences = {
   held_short: ({ left_m }, { number }) => `retenue à ${number(left_m, 2)} m du but`,
   goes_around: () => "contourne quelqu’un sur le chemin",
   stands_there: () => "en place",
+  looks_at: ({ person, object, angle_rad, distance_m }, { number, object: label }) =>
+    `${person} regarde à ${number((angle_rad * 180) / Math.PI, 0)}° de ${label(object)}, à ${number(distance_m, 2)} m`,
+  none_plain: ({ person, probability }, { number }) => `sans doute aucun d’eux (${number(probability * 100, 0)} %) : ${person} regarde autour`,
+  at_object: ({ object, probability }, { number, object: label }) => `à ${label(object)}, le plus probable (${number(probability * 100, 0)} %)`,
+  at_another: ({ object }, { object: label }) => `à ${label(object)} : de là, davantage est atteint à temps`,
+  between: ({ object, other }, { object: label }) => `entre ${label(object)} et ${label(other)} : de là, l’un ou l’autre est atteint à temps`,
+  at_mean: () => "la moyenne des places des objets, pondérée par la croyance",
+  among_objects: () => "au milieu de plusieurs objets : de là, la plupart sont atteints à temps",
+  straight_on: () => "tout droit, personne sur le chemin",
+  at_its_limits: () => "aussi tôt que ses limites le permettent",
+  people_cost: ({ secs }, { number }) => `des personnes sur le chemin et un départ doux coûtent ${number(secs, 1)} s`,
+  not_foreseen: () => "plus loin que le planificateur ne prévoit",
 };
