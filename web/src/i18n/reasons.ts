@@ -18,3 +18,6 @@ export interface Sayings {
 export type ReasonSentences = {
   readonly [Id in Reason["id"]]: (given: Extract<Reason, { readonly id: Id }>, say: Sayings) => string;
 };
+
+/** Half a degree, which reads as 0°: somebody looks at what is nearer than this to their view axis, rad. */
+export const AT_RAD = Math.PI / 360;

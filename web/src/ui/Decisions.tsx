@@ -25,7 +25,7 @@ export function Decisions(props: { readonly live: Live }): JSX.Element {
     <section class="panel decisions" aria-labelledby="decisions-title">
       <h2 id="decisions-title">{text().title}</h2>
       <dl class="fades" data-testid="decisions">
-        <div>
+        <div class="decision-belief">
           <dt>{text().belief} <Decider title={text().rule} name={snapshot()?.intention_rule} testId="decided-by-rule" /></dt>
           <dd>
             <Show when={shares().length > 0} fallback={text().nobody}>
@@ -42,23 +42,29 @@ export function Decisions(props: { readonly live: Live }): JSX.Element {
                 </For>
               </ul>
             </Show>
+            <Why testId="why-belief" text={why("belief")} />
           </dd>
-          <Why testId="why-belief" text={why("belief")} />
         </div>
         <div>
           <dt>{text().place} <Decider title={text().standing} name={snapshot()?.standing} testId="decided-by-standing" /></dt>
-          <dd data-testid="decided-place">{decided() ? placeOf(snapshot()?.column ?? null) : text().nothing}</dd>
-          <Why testId="why-place" text={why("place")} />
+          <dd>
+            <span data-testid="decided-place">{decided() ? placeOf(snapshot()?.column ?? null) : text().nothing}</span>
+            <Why testId="why-place" text={why("place")} />
+          </dd>
         </div>
-        <div>
+        <div class="decision-route">
           <dt>{text().route} <Decider title={text().motion} name={snapshot()?.motion} testId="decided-by-motion" /></dt>
-          <dd data-testid="decided-route">{decided() ? routeOf(snapshot()?.column ?? null) : text().nothing}</dd>
-          <Why testId="why-route" text={why("route")} />
+          <dd>
+            <span data-testid="decided-route">{decided() ? routeOf(snapshot()?.column ?? null) : text().nothing}</span>
+            <Why testId="why-route" text={why("route")} />
+          </dd>
         </div>
         <div>
           <dt>{text().arrival}</dt>
-          <dd data-testid="decided-arrival">{decided() ? arrivalOf(snapshot()) : text().nothing}</dd>
-          <Why testId="why-arrival" text={why("arrival")} />
+          <dd>
+            <span data-testid="decided-arrival">{decided() ? arrivalOf(snapshot()) : text().nothing}</span>
+            <Why testId="why-arrival" text={why("arrival")} />
+          </dd>
         </div>
       </dl>
     </section>
@@ -80,7 +86,7 @@ function Decider(props: { readonly title: string; readonly name: string | undefi
 }
 
 function Why(props: { readonly text: string; readonly testId: string }): JSX.Element {
-  return <dd class="decision-why" data-testid={props.testId}>{props.text}</dd>;
+  return <Show when={props.text}><span class="decision-why" data-testid={props.testId}>{props.text}</span></Show>;
 }
 
 /** The server's English sentence is not sent for these: a reason that the page does not know is left out. */

@@ -146,6 +146,6 @@ mod tests {
         assert_eq!(decided(|state| state.mode = Mode::ProtectiveStop), None);
         assert_eq!(decided(|state| state.column.serves = None), None);
         let unforeseen = decided(|state| state.column.arrival_secs = None).unwrap();
-        assert_eq!(unforeseen[3], "farther off than the planner looks ahead");
+        assert_eq!(unforeseen[3], "later than it plans ahead");
     }
 }

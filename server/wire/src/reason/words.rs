@@ -160,7 +160,11 @@ impl fmt::Display for Reason {
             Self::StandsThere => write!(f, "stands there"),
             Self::LooksAt { person, object, angle_rad, distance_m } => {
                 let degrees = angle_rad.to_degrees();
-                write!(f, "{person} looks {degrees:.0}° beside {object}, {distance_m:.2} m away")
+                if degrees < 0.5 {
+                    write!(f, "{person} looks at {object}, {distance_m:.2} m away")
+                } else {
+                    write!(f, "{person} looks {degrees:.0}° beside {object}, {distance_m:.2} m away")
+                }
             }
             Self::NonePlain { person, probability } => {
                 write!(f, "most likely none of them ({:.0} %): {person} looks around", probability * 100.0)
@@ -177,7 +181,7 @@ impl fmt::Display for Reason {
             Self::StraightOn => write!(f, "straight, nobody in the way"),
             Self::AtItsLimits => write!(f, "as soon as its limits allow"),
             Self::PeopleCost { secs } => write!(f, "people on the way and a soft start cost {secs:.1} s"),
-            Self::NotForeseen => write!(f, "farther off than the planner looks ahead"),
+            Self::NotForeseen => write!(f, "later than it plans ahead"),
         }
     }
 }

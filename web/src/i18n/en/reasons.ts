@@ -1,5 +1,5 @@
 /** Reasons: why a rule stands as it does, why the column does what it does, why a request was answered so. */
-import type { ReasonSentences } from "../reasons";
+import { AT_RAD, type ReasonSentences } from "../reasons";
 
 /** By the id that the server sends; the same sentences as the server's own. */
 export const reasons: ReasonSentences = {
@@ -103,7 +103,7 @@ export const reasons: ReasonSentences = {
   goes_around: () => "around somebody in the way",
   stands_there: () => "stands there",
   looks_at: ({ person, object, angle_rad, distance_m }, { number, object: label }) =>
-    `${person} looks ${number((angle_rad * 180) / Math.PI, 0)}° beside ${label(object)}, ${number(distance_m, 2)} m away`,
+    `${person} looks ${angle_rad < AT_RAD ? "at" : `${number((angle_rad * 180) / Math.PI, 0)}° beside`} ${label(object)}, ${number(distance_m, 2)} m away`,
   none_plain: ({ person, probability }, { number }) => `most likely none of them (${number(probability * 100, 0)} %): ${person} looks around`,
   at_object: ({ object, probability }, { number, object: label }) => `at ${label(object)}, the most probable (${number(probability * 100, 0)} %)`,
   at_another: ({ object }, { object: label }) => `at ${label(object)}: from there more can be reached in time`,
@@ -113,5 +113,5 @@ export const reasons: ReasonSentences = {
   straight_on: () => "straight, nobody in the way",
   at_its_limits: () => "as soon as its limits allow",
   people_cost: ({ secs }, { number }) => `people on the way and a soft start cost ${number(secs, 1)} s`,
-  not_foreseen: () => "farther off than the planner looks ahead",
+  not_foreseen: () => "later than it plans ahead",
 };

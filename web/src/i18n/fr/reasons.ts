@@ -1,5 +1,5 @@
 /** Motifs : pourquoi une règle est dans cet état, pourquoi la colonne fait ce qu’elle fait, pourquoi une demande a reçu cette réponse. */
-import type { ReasonSentences } from "../reasons";
+import { AT_RAD, type ReasonSentences } from "../reasons";
 
 /** Selon l’identifiant envoyé par le serveur. */
 export const reasons: ReasonSentences = {
@@ -103,7 +103,7 @@ export const reasons: ReasonSentences = {
   goes_around: () => "contourne quelqu’un sur le chemin",
   stands_there: () => "en place",
   looks_at: ({ person, object, angle_rad, distance_m }, { number, object: label }) =>
-    `${person} regarde à ${number((angle_rad * 180) / Math.PI, 0)}° de ${label(object)}, à ${number(distance_m, 2)} m`,
+    `${person} regarde ${angle_rad < AT_RAD ? "" : `à ${number((angle_rad * 180) / Math.PI, 0)}° de `}${label(object)}, à ${number(distance_m, 2)} m`,
   none_plain: ({ person, probability }, { number }) => `sans doute aucun d’eux (${number(probability * 100, 0)} %) : ${person} regarde autour`,
   at_object: ({ object, probability }, { number, object: label }) => `à ${label(object)}, le plus probable (${number(probability * 100, 0)} %)`,
   at_another: ({ object }, { object: label }) => `à ${label(object)} : de là, davantage est atteint à temps`,
@@ -113,5 +113,5 @@ export const reasons: ReasonSentences = {
   straight_on: () => "tout droit, personne sur le chemin",
   at_its_limits: () => "aussi tôt que ses limites le permettent",
   people_cost: ({ secs }, { number }) => `des personnes sur le chemin et un départ doux coûtent ${number(secs, 1)} s`,
-  not_foreseen: () => "plus loin que le planificateur ne prévoit",
+  not_foreseen: () => "plus tard que son plan ne va",
 };
