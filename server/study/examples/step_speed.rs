@@ -65,6 +65,7 @@ fn look(load: &Load, out: &mut impl Write) -> Result<(), Box<dyn Error>> {
             lateness_p99_micros: 80.0,
             lateness_max_micros: 120.0,
             scheduling: "normal".into(),
+            scheduling_why: Vec::new(),
         };
         let clients = Vec::new();
         let around = Surroundings {

@@ -1,5 +1,6 @@
 //! covr-wire: the messages of clients and dashboards, scenes as serialised, frame conversion. Pure.
 
+pub mod accepts;
 pub mod answers;
 pub mod client;
 pub mod clock;

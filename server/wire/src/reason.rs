@@ -441,4 +441,25 @@ pub enum Reason {
     },
     /// Arrival: not as far ahead as the planner looks.
     NotForeseen,
+    /// Scheduling: real time was not asked for.
+    RealTimeNotAsked,
+    /// Scheduling: real time.
+    RealTime {
+        /// SCHED_FIFO priority.
+        priority: u8,
+    },
+    /// Scheduling: real time was not permitted.
+    RealTimeRefused {
+        /// By the system.
+        said: String,
+    },
+    /// Memory: locked.
+    MemoryLocked,
+    /// Memory: locked as far as it is there now.
+    MemoryLockedForNow,
+    /// Memory: not locked.
+    MemoryNotLocked {
+        /// By the system.
+        said: String,
+    },
 }

@@ -13,6 +13,7 @@ use covr_engine::time::Time;
 use nalgebra::UnitQuaternion;
 
 use crate::dashboard::ControlLoop;
+use crate::reason::Reason as WireReason;
 use crate::scene::{SceneDocument, build_scene, parse_scene};
 
 pub(crate) const SCENE: &str = r#"{
@@ -44,7 +45,8 @@ pub(crate) fn control_loop() -> ControlLoop {
         missed_deadlines: 0,
         lateness_p99_micros: 80.0,
         lateness_max_micros: 120.0,
-        scheduling: "normal".into(),
+        scheduling: WireReason::RealTimeNotAsked.to_string(),
+        scheduling_why: vec![WireReason::RealTimeNotAsked],
     }
 }
 

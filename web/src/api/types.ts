@@ -1,6 +1,7 @@
 /** The wire's types under one roof. They are generated from the server's sources; nothing here is written by hand:
  * `generated` is what the sockets and the store carry, `answers` what HTTP alone answers. */
 export type {
+  Accepts,
   Activity,
   Client,
   Column,

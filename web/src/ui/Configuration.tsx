@@ -3,6 +3,8 @@ import { createMemo, createResource, createSignal, For, Show, type JSX } from "s
 import { readConfig } from "../api/http";
 import type { ConfigKey } from "../api/types";
 import { words } from "../i18n";
+import { acceptsOf, meaningOf } from "./configWords";
+import { Said } from "./Said";
 import { troubleOf } from "../lib/trouble";
 
 /** The panel; read when it is opened, and again on request. */
@@ -93,11 +95,9 @@ function Row(props: { readonly key: ConfigKey }): JSX.Element {
     <tr classList={{ differs: differs(props.key) }} data-testid={`config-${props.key.name}`}>
       <th scope="row">
         <code>{props.key.name}</code>
-        <span class="meaning" lang="en">
-          {props.key.meaning}
-        </span>
+        <Said class="meaning" of={meaningOf(props.key)} />
         <small>
-          {say().accepts} <span lang="en">{props.key.accepts}</span> · {say().variable} <code>{variableOf(props.key.name)}</code>
+          {say().accepts} {acceptsOf(props.key.takes)} · {say().variable} <code>{variableOf(props.key.name)}</code>
         </small>
       </th>
       <td>
@@ -114,7 +114,7 @@ function Row(props: { readonly key: ConfigKey }): JSX.Element {
 
 /** Every word of the search in the name, the meaning or the value. */
 function fits(key: ConfigKey, wanted: string): boolean {
-  const text = `${key.name} ${key.meaning} ${textOf(key.value)}`.toLowerCase();
+  const text = `${key.name} ${meaningOf(key).text} ${textOf(key.value)}`.toLowerCase();
   return wanted.toLowerCase().split(/\s+/).every((word) => text.includes(word));
 }
 

@@ -285,6 +285,8 @@ pub struct ControlLoop {
     pub lateness_max_micros: f64,
     /// The scheduler and locked memory in force, in plain words.
     pub scheduling: String,
+    /// The same as ids and their values.
+    pub scheduling_why: Vec<Reason>,
 }
 
 /// One VR client.

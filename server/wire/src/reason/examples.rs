@@ -132,6 +132,12 @@ impl Reason {
             Self::AtItsLimits,
             Self::PeopleCost { secs: 0.42 },
             Self::NotForeseen,
+            Self::RealTimeNotAsked,
+            Self::RealTime { priority: 60 },
+            Self::RealTimeRefused { said: "EPERM".into() },
+            Self::MemoryLocked,
+            Self::MemoryLockedForNow,
+            Self::MemoryNotLocked { said: "EPERM".into() },
         ]
     }
 }

@@ -182,6 +182,18 @@ impl fmt::Display for Reason {
             Self::AtItsLimits => write!(f, "as soon as its limits allow"),
             Self::PeopleCost { secs } => write!(f, "people on the way and a soft start cost {secs:.1} s"),
             Self::NotForeseen => write!(f, "later than it plans ahead"),
+            Self::RealTimeNotAsked => {
+                write!(f, "normal scheduling, memory not locked (control.real_time is false)")
+            }
+            Self::RealTime { priority } => write!(f, "SCHED_FIFO priority {priority}"),
+            Self::RealTimeRefused { said } => {
+                write!(f, "normal scheduling (SCHED_FIFO not permitted: {said})")
+            }
+            Self::MemoryLocked => write!(f, "memory locked"),
+            Self::MemoryLockedForNow => {
+                write!(f, "present memory locked, future memory not (RLIMIT_MEMLOCK is limited)")
+            }
+            Self::MemoryNotLocked { said } => write!(f, "memory not locked ({said})"),
         }
     }
 }

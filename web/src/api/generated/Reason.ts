@@ -320,4 +320,16 @@ other: string, } | { "id": "at_mean" } | { "id": "among_objects" } | { "id": "st
 /**
  * How much, s.
  */
-secs: number, } | { "id": "not_foreseen" };
+secs: number, } | { "id": "not_foreseen" } | { "id": "real_time_not_asked" } | { "id": "real_time", 
+/**
+ * SCHED_FIFO priority.
+ */
+priority: number, } | { "id": "real_time_refused", 
+/**
+ * By the system.
+ */
+said: string, } | { "id": "memory_locked" } | { "id": "memory_locked_for_now" } | { "id": "memory_not_locked", 
+/**
+ * By the system.
+ */
+said: string, };

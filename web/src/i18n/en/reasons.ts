@@ -114,4 +114,10 @@ export const reasons: ReasonSentences = {
   at_its_limits: () => "as soon as its limits allow",
   people_cost: ({ secs }, { number }) => `people on the way and a soft start cost ${number(secs, 1)} s`,
   not_foreseen: () => "later than it plans ahead",
+  real_time_not_asked: () => "normal scheduling, memory not locked (control.real_time is false)",
+  real_time: ({ priority }) => `SCHED_FIFO priority ${priority}`,
+  real_time_refused: ({ said }) => `normal scheduling (SCHED_FIFO not permitted: ${said})`,
+  memory_locked: () => "memory locked",
+  memory_locked_for_now: () => "present memory locked, future memory not (RLIMIT_MEMLOCK is limited)",
+  memory_not_locked: ({ said }) => `memory not locked (${said})`,
 };

@@ -114,4 +114,10 @@ export const reasons: ReasonSentences = {
   at_its_limits: () => "aussi tôt que ses limites le permettent",
   people_cost: ({ secs }, { number }) => `des personnes sur le chemin et un départ doux coûtent ${number(secs, 1)} s`,
   not_foreseen: () => "plus tard que son plan ne va",
+  real_time_not_asked: () => "ordonnancement normal, mémoire non verrouillée (control.real_time vaut false)",
+  real_time: ({ priority }) => `SCHED_FIFO, priorité ${priority}`,
+  real_time_refused: ({ said }) => `ordonnancement normal (SCHED_FIFO refusé : ${said})`,
+  memory_locked: () => "mémoire verrouillée",
+  memory_locked_for_now: () => "mémoire présente verrouillée, à venir non (RLIMIT_MEMLOCK est limité)",
+  memory_not_locked: ({ said }) => `mémoire non verrouillée (${said})`,
 };
