@@ -1,5 +1,7 @@
-import { readFileSync, readdirSync } from "node:fs";
+import { readFileSync, readdirSync, statSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 import type { Plugin } from "vite";
 import { defineConfig } from "vitest/config";
 import solid from "vite-plugin-solid";
@@ -12,7 +14,7 @@ const isTest = process.env["VITEST"] !== undefined;
 const proxy = server === undefined ? {} : { "/api": server, "/ws": { target: server, ws: true } };
 
 export default defineConfig({
-  plugins: [solid(), asTheyStand(), ...(server === undefined && !isTest ? [mockServer()] : [])],
+  plugins: [solid(), asTheyStand(), compressed(), ...(server === undefined && !isTest ? [mockServer()] : [])],
   server: { proxy },
   preview: { proxy },
   build: {
@@ -20,6 +22,8 @@ export default defineConfig({
     emptyOutDir: true,
     target: "es2022",
     assetsInlineLimit: 0,
+    // Every browser that knows the page's other means preloads modules by itself.
+    modulePreload: { polyfill: false },
     // The reference of the API is a page of its own, so that the dashboard does not carry its renderer.
     rolldownOptions: { input: ["index.html", "docs.html"] },
     // Swagger UI comes as one piece of 1.7 MB.
@@ -48,6 +52,22 @@ function asTheyStand(): Plugin {
       const swagger = import.meta.resolve("swagger-ui-dist/package.json");
       for (const name of ["LICENSE", "NOTICE", "swagger-ui-es-bundle.js.LICENSE.txt"]) {
         emit(`licences/swagger-ui/${name.replace(/\.txt$/, "")}.txt`, new URL(name, swagger));
+      }
+    },
+  };
+}
+
+/** Beside each text that is worth it, the same compressed: the server has no need to do it for every tablet. */
+function compressed(): Plugin {
+  return {
+    name: "compressed",
+    apply: "build",
+    // From what was written: the bundle's own text is not final before.
+    writeBundle({ dir }, bundle) {
+      for (const fileName of Object.keys(bundle)) {
+        const path = join(dir ?? "", fileName);
+        if (!/\.(js|css|html|svg)$/.test(fileName) || statSync(path).size < 1024) continue;
+        writeFileSync(`${path}.gz`, gzipSync(readFileSync(path), { level: 9 }));
       }
     },
   };

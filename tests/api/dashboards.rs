@@ -11,7 +11,9 @@ use tokio_tungstenite::tungstenite::protocol::frame::coding::CloseCode;
 async fn answer(dashboard: &mut Dashboard, wanted: u32) -> (Outcome, String, Option<u64>) {
     dashboard
         .hear("the answer", |m| match m {
-            ToDashboard::Answer { request_id, outcome, detail, to_drive_micros } if *request_id == wanted => {
+            ToDashboard::Answer { request_id, outcome, detail, to_drive_micros, .. }
+                if *request_id == wanted =>
+            {
                 Some((*outcome, detail.clone(), *to_drive_micros))
             }
             _ => None,

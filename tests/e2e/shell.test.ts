@@ -36,7 +36,7 @@ describe("theme and language", () => {
     expect(await wears()).toEqual(["light", "fr"]);
   });
 
-  it("leave no English word of the catalogue on a French page", async () => {
+  it("leave no English word of the catalogue, and none of the server, on a French page", async () => {
     await dashboard.page.getByTestId("switch-language").click();
     const french = new Set(textsOf(fr));
     const onlyEnglish = textsOf(en).filter((text) => !french.has(text));
@@ -47,6 +47,10 @@ describe("theme and language", () => {
       const shown = await dashboard.page.evaluate(shownTexts);
       expect(shown.length, view).toBeGreaterThan(20);
       expect(shown.filter((text) => onlyEnglish.includes(text)), view).toEqual([]);
+      // What the server says in English alone is marked so: nothing is.
+      if (view === "settings") await dashboard.page.getByTestId("config-people.v_h_mps").waitFor({ timeout: 5_000 });
+      const marked = await dashboard.page.evaluate(() => [...document.querySelectorAll("body [lang=en]")].map((element) => element.textContent));
+      expect(marked, view).toEqual([]);
     }
   });
 });

@@ -2,7 +2,7 @@
  * A machine to look at: plausible numbers for the dashboard's development and tests. It makes no claim to be safe or
  * true; the real one is the server's.
  */
-import type { MachineRequest, Mode, ObjectState, Outcome, Person, PriorPreview, SceneDocument, Snapshot, StopCause, WireEvent } from "../src/api/types";
+import type { Decision, MachineRequest, Mode, ObjectState, Outcome, Person, PriorPreview, Reason, SceneDocument, Snapshot, StopCause, WireEvent } from "../src/api/types";
 
 /** What the mock's owner may set up. */
 export interface MockOptions {
@@ -15,7 +15,11 @@ export interface MockOptions {
 export interface MockAnswer {
   readonly outcome: Outcome;
   readonly detail: string;
+  readonly why: Reason | null;
 }
+
+/** A reason and the server's sentence for it. */
+type Told = readonly [Reason, string];
 
 /** One mock machine with its visitor. */
 export class MockMachine {
@@ -67,7 +71,7 @@ export class MockMachine {
   stop(reason: string | null): { toDriveMicros: number | null } {
     const already = this.#mode === "latched_stop";
     this.event("stop_pressed", reason ?? "software stop", { author: "game master", by: "mock", reason, to_drive_micros: already ? 0 : 1840 });
-    if (!already) this.#latch(`software stop: ${reason ?? "no reason given"}`);
+    if (!already) this.#latch(reason);
     return { toDriveMicros: already ? null : 1840 };
   }
 
@@ -76,25 +80,27 @@ export class MockMachine {
     if (typeof request === "object" && "confirm_left" in request) {
       const detail = `the headset of person ${request.confirm_left} is tracked: they are in the arena`;
       this.event("request_refused", detail);
-      return { outcome: "refused", detail };
+      return { outcome: "refused", detail, why: { id: "person_still_tracked", person: "Ada" } };
     }
     if (typeof request === "object") {
       this.#awaitsConfirmation = false;
       this.event("request_accepted", `person ${request.confirm_origin} stands on the floor mark`);
-      return { outcome: "accepted", detail: "the person is confirmed" };
+      return { outcome: "accepted", detail: "Ada is confirmed on the floor mark", why: { id: "origin_confirmed", person: "Ada" } };
     }
     const refusal = this.#refusal(request);
     if (refusal !== null) {
-      this.event("request_refused", `${request}: ${refusal}`);
-      return { outcome: "refused", detail: refusal };
+      const [why, detail] = refusal;
+      this.event("request_refused", `${request}: ${detail}`);
+      return { outcome: "refused", detail, why };
     }
     if (request === "reset" && (reason === null || reason === "")) {
-      return { outcome: "refused", detail: "a reset needs a reason" };
+      return { outcome: "refused", detail: "a reset needs a reason", why: { id: "reset_needs_reason" } };
     }
     this.event("request_accepted", reason === null ? request : `${request}: ${reason}`);
     this.#stop = null;
-    this.#enter({ home: "homing", arm: "following", disarm: "disarmed", reset: "disarmed" }[request] as Mode);
-    return { outcome: "accepted", detail: { home: "homing", arm: "armed", disarm: "drive released", reset: "disarmed, home next" }[request] };
+    const mode = { home: "homing", arm: "following", disarm: "disarmed", reset: "disarmed" }[request] as Mode;
+    this.#enter(mode);
+    return { outcome: "accepted", detail: `now ${mode}`, why: { id: "now_in", mode } };
   }
 
   /** Takes the visitor's headset off and on. */
@@ -147,13 +153,15 @@ export class MockMachine {
     const at = Math.round(this.#atSecs * 1e6);
     const speed = Math.hypot(...this.#velocity);
     const required = 0.62 + 0.3 * speed;
-    const rule = (id: string, title: string, reason: string, status: Snapshot["rules"][number]["status"] = "clear") => ({
+    const rule = (id: string, title: string, [why, reason]: Told, status: Snapshot["rules"][number]["status"] = "clear") => ({
       rule: id,
       title,
       status,
       reason,
+      why,
       since_micros: 0,
     });
+    const near = this.#distance() < required + 0.3;
     return {
       generation: this.#generation,
       at_micros: at,
@@ -162,22 +170,25 @@ export class MockMachine {
       stop: this.#stop,
       requests: (["home", "arm", "disarm", "stop", "reset"] as const).map((request) => ({
         request,
-        refused_because: request === "stop" ? null : this.#refusal(request),
+        refused_because: request === "stop" ? null : (this.#refusal(request)?.[1] ?? null),
+        why: request === "stop" ? null : (this.#refusal(request)?.[0] ?? null),
       })),
       rules: [
-        rule("R1", "travel", "0.42 m to the nearest limit, margin 0.02 m"),
-        rule("R2", "tracking", "Ada: pose 12 ms old, limit 500 ms"),
-        rule("R3", "separation", `Ada: ${this.#distance().toFixed(2)} m away, ${required.toFixed(2)} m required`, this.#distance() < required + 0.3 ? "limiting" : "clear"),
-        rule("R4", "software stop", this.#stop === null ? "not pressed" : this.#stop.reason, this.#stop === null ? "clear" : "breached"),
-        rule("R5", "motor current", "1.2 A of 5.0 A"),
-        rule("R6", "following error", "4 mm of 50 mm"),
-        rule("R7", "plausibility", "motion matches the command"),
-        rule("R8", "controller link", "answered within 3 ms, limit 100 ms"),
-        rule("R9", "control loop", "no deadline missed"),
-        rule("R10", "client", "Ada is connected"),
-        rule("R13", "keep-outs", "Table: 0.9 m away"),
-        rule("R15", "tracking origin", this.#awaitsConfirmation ? "Ada awaits confirmation" : "confirmed", this.#awaitsConfirmation ? "breached" : "clear"),
-        rule("R16", "arena", "somebody is tracked", "idle"),
+        rule("R1", "travel", [{ id: "inside_travel" }, "inside the travel"]),
+        rule("R2", "tracking", [{ id: "headsets_tracked" }, "everybody's headset is tracked"]),
+        rule("R3", "separation", near ? this.#inTheWay(required) : [{ id: "nobody_in_the_way" }, "nobody in the way"], near ? "limiting" : "clear"),
+        rule("R4", "software stop", this.#stop === null ? [{ id: "stop_not_pressed" }, "not pressed"] : [this.#stop.why, this.#stop.reason], this.#stop === null ? "clear" : "breached"),
+        rule("R5", "motor current", [{ id: "motor_current", amps: 1.2, limit_amps: 5 }, "1.2 A against a limit of 5.0 A"]),
+        rule("R6", "following error", [{ id: "behind_command", behind_m: 0.004 }, "0.4 cm behind the command"]),
+        rule("R7", "plausibility", [{ id: "moves_as_commanded" }, "moves as commanded"]),
+        rule("R8", "controller link", [{ id: "controller_answers" }, "the controller answers"]),
+        rule("R9", "control loop", [{ id: "steps_in_time" }, "control steps begin in time"]),
+        rule("R10", "VR client", [{ id: "headsets_tracked" }, "everybody's headset is tracked"]),
+        rule("R13", "keep-out shapes", [{ id: "no_keep_out_in_the_way" }, "no keep-out shape in the way"]),
+        this.#awaitsConfirmation
+          ? rule("R15", "tracking origin", [{ id: "origin_unconfirmed", person: "Ada" }, "Ada must be confirmed on the floor mark: the tracking origin changed"], "breached")
+          : rule("R15", "tracking origin", [{ id: "headsets_tracked" }, "everybody's headset is tracked"]),
+        rule("R16", "arena confirmed clear", [{ id: "arena_accounted_for" }, "people are tracked, or the arena was confirmed clear"], "idle"),
       ],
       column: {
         position_m: [...this.#column],
@@ -188,7 +199,10 @@ export class MockMachine {
         serves: this.#mode === "following" ? person.id : null,
         committed: this.#mode === "following" ? best.id : null,
         activity: this.#mode === "following" ? (speed < 0.02 ? "in_place" : "approaching") : this.#mode === "disarmed" ? "released" : this.#mode === "homing" ? "homing" : this.#mode === "ready" ? "ready" : "stopped",
-        reason: this.#mode === "following" ? `${best.id}: weight ${best.weight.toFixed(2)}, the greatest` : "not armed",
+        reason: this.#mode === "following" ? `for Ada, ${best.id}: weight ${best.weight.toFixed(2)}` : "the drive is released",
+        decision: this.#mode === "following" ? this.#decision(best) : null,
+        arrival_secs: this.#mode === "following" ? best.arrival_secs : null,
+        why: this.#mode === "following" ? [{ id: "serves", person: "Ada", object: best.id, weight: best.weight, probability: best.probability }] : [{ id: "drive_released" }],
         planned_path_m: target === null ? [] : this.#pathTo(target),
         current_amps: [0.8 + speed, 0.6 + speed],
         homed: this.#mode !== "faulted",
@@ -203,14 +217,18 @@ export class MockMachine {
         },
       ],
       objects,
-      intention_rule: "paper",
+      intention_rule: "bayes",
+      standing: "in-time",
+      motion: "planner",
+      none_probability: 0.1,
       control_loop: {
         rate_hz: 250,
         steps: Math.round(this.#atSecs * 250),
         missed_deadlines: 0,
         lateness_p99_micros: 310,
         lateness_max_micros: 1240,
-        scheduling: "ordinary scheduling, memory not locked",
+        scheduling: "normal scheduling, memory not locked (control.real_time is false)",
+        scheduling_why: [{ id: "real_time_not_asked" }],
       },
       clients: [{ name: "mock visitor", convention: "openxr", poses: this.#generation * 3, pose_rate_hz: 90, rtt_millis: 0.6, persons: [1], pose_age_millis: 12, jitter_millis: 1.4, loss_percent: 0, errors: 0 }],
       scene_id: this.sceneId,
@@ -218,11 +236,12 @@ export class MockMachine {
     };
   }
 
-  #latch(reason: string): void {
+  #latch(reason: string | null): void {
     this.#stop = {
       rule: "R4",
-      reason,
-      clears_when: "a game master resets it with a reason",
+      reason: `software stop: ${reason ?? "no reason given"}`,
+      why: { id: "software_stop", said: reason },
+      clears_when: "reset, with a reason, once the cause is gone; then arm",
       since_micros: Math.round(this.#atSecs * 1e6),
     };
     this.#enter("latched_stop");
@@ -235,18 +254,36 @@ export class MockMachine {
     this.event("mode_changed", `${from} to ${mode}`, { from, to: mode, because: "asked" });
   }
 
-  #refusal(request: "home" | "arm" | "disarm" | "reset"): string | null {
+  #refusal(request: "home" | "arm" | "disarm" | "reset"): Told | null {
     const latched = this.#mode === "latched_stop";
+    const resetFirst: Told = [{ id: "reset_first" }, "the machine is stopped: reset first"];
     switch (request) {
       case "home":
-        return this.#mode === "disarmed" ? null : latched ? "latched stop: reset first" : `not while ${this.#mode}`;
+        return this.#mode === "disarmed" ? null : latched ? resetFirst : [{ id: "disarm_first" }, "the machine is armed: disarm first"];
       case "arm":
-        return this.#mode === "ready" ? null : latched ? "latched stop: reset first" : this.#mode === "disarmed" ? "not homed: home first" : `not while ${this.#mode}`;
+        if (this.#mode === "ready") return null;
+        return latched ? resetFirst : this.#mode === "disarmed" ? [{ id: "home_first" }, "not homed: home first"] : [{ id: "armed_already" }, "armed already"];
       case "disarm":
-        return this.#mode === "disarmed" ? "it is disarmed" : latched ? "latched stop: the drive is released" : null;
+        if (this.#mode === "disarmed") return [{ id: "disarmed_already" }, "disarmed already"];
+        return latched ? [{ id: "released_already" }, "the drive is released already; leave the stop by reset"] : null;
       case "reset":
-        return latched || this.#mode === "faulted" ? null : "there is nothing to reset";
+        return latched || this.#mode === "faulted" ? null : [{ id: "nothing_to_reset" }, "nothing to reset"];
     }
+  }
+
+  #decision(best: ObjectState): Decision {
+    return {
+      belief: [{ id: "looks_at", person: "Ada", object: best.id, angle_rad: best.angle_rad ?? 0, distance_m: best.distance_m ?? 0 }],
+      place: [{ id: "at_object", object: best.id, probability: best.probability }],
+      route: [{ id: "straight_on" }],
+      arrival: [{ id: "at_its_limits" }],
+    };
+  }
+
+  #inTheWay(required: number): Told {
+    const distance = this.#distance();
+    const why: Reason = { id: "person_in_the_way", person: "Ada", distance_m: distance, required_m: required };
+    return [why, `slowed or turned for Ada: ${distance.toFixed(2)} m on the way, ${required.toFixed(2)} m needed`];
   }
 
   #person(): Person {
@@ -293,10 +330,12 @@ export class MockMachine {
         column_place_m: place,
         arrival_secs: Math.hypot(place[0] - this.#column[0], place[1] - this.#column[1]) / 0.9,
         touch_secs: Math.max(0, away - 0.6) / 0.7,
+        angle_rad: Math.abs(Math.atan2(Math.sin(Math.atan2(dy, dx) - person.yaw_rad), Math.cos(Math.atan2(dy, dx) - person.yaw_rad))),
+        distance_m: away,
       };
     });
     const sum = rows.reduce((total, row) => total + row.weight, 0);
-    return rows.map((row) => ({ ...row, probability: sum > 0 ? row.weight / sum : 0 }));
+    return rows.map((row) => ({ ...row, probability: sum > 0 ? (0.9 * row.weight) / sum : 0 }));
   }
 
   #best(objects: readonly ObjectState[]): ObjectState {

@@ -46,5 +46,5 @@ it("speaks the dashboard's contract: every frame is understood, and a stop is an
   expect(received.find((message) => message.type === "answer")).toMatchObject({ request_id: 9, outcome: "accepted" });
   const home = await fetch(`http://${address}/api/v1/home`, { method: "POST", body: "{}" });
   expect(home.status).toBe(409);
-  expect(await home.json()).toMatchObject({ detail: "latched stop: reset first" });
+  expect(await home.json()).toMatchObject({ detail: "the machine is stopped: reset first" });
 });

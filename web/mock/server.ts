@@ -4,7 +4,7 @@
  */
 import type { IncomingMessage, Server, ServerResponse } from "node:http";
 import { WebSocketServer, type WebSocket } from "ws";
-import type { FromDashboard, MachineRequest, PriorChange, SceneDocument, SceneError, ToDashboard } from "../src/api/types";
+import type { FromDashboard, MachineRequest, PriorChange, Reason, SceneDocument, SceneError, ToDashboard } from "../src/api/types";
 import { MOCK_CONFIG } from "./config.ts";
 import { drawable } from "../src/lib/sceneText.ts";
 import { MockMachine, type MockOptions } from "./machine.ts";
@@ -82,6 +82,7 @@ export class MockServer {
           request_id: message.request_id,
           outcome: toDriveMicros === null ? "already_so" : "accepted",
           detail: "stopped",
+          why: { id: "stopped" },
           to_drive_micros: toDriveMicros,
         });
       } else {
@@ -101,7 +102,7 @@ export class MockServer {
       reply(response, 200, { acknowledged: true, to_drive_micros: toDriveMicros });
     } else if (method === "POST" && isRequest(first)) {
       const answer = this.machine.ask(first, reasonOf(body));
-      if (answer.outcome === "refused") problem(response, 409, "Refused", answer.detail);
+      if (answer.outcome === "refused") problem(response, 409, "Refused", answer.detail, undefined, answer.why);
       else reply(response, 200, answer);
     } else if (key === "POST persons" && third === "confirm") {
       reply(response, 200, this.machine.ask({ confirm_origin: Number(second) }, null));
@@ -271,10 +272,10 @@ function reply(response: ServerResponse, status: number, body: unknown): void {
   response.writeHead(status, { "Content-Type": "application/json" }).end(JSON.stringify(body));
 }
 
-function problem(response: ServerResponse, status: number, title: string, detail: string, errors?: readonly SceneError[]): void {
+function problem(response: ServerResponse, status: number, title: string, detail: string, errors?: readonly SceneError[], why?: Reason | null): void {
   response
     .writeHead(status, { "Content-Type": "application/problem+json" })
-    .end(JSON.stringify({ type: "about:blank", title, status, detail, errors }));
+    .end(JSON.stringify({ type: "about:blank", title, status, detail, errors, why: why ?? undefined }));
 }
 
 async function readBody(request: IncomingMessage): Promise<string> {

@@ -7,6 +7,7 @@ import "./style/shell.css";
 import "./style/picture.css";
 import "./style/panels.css";
 import "./style/desk.css";
+import "./style/decisions.css";
 import "./style/weights.css";
 import "./style/timeline.css";
 import "./style/records.css";

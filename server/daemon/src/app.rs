@@ -7,8 +7,9 @@ use covr_engine::mode::RequestKind;
 use covr_engine::observation::PersonId;
 use covr_engine::{Answer, Outcome, Request};
 use covr_wire::dashboard::request_name;
+use covr_wire::reason::Reason;
 use metrics_exporter_prometheus::PrometheusHandle;
-use serde_json::json;
+use serde_json::{Value, json};
 use tokio::sync::{Semaphore, watch};
 
 use crate::clients::Clients;
@@ -72,23 +73,27 @@ impl App {
         reason: Option<String>,
     ) -> Result<Answer, NotDelivered> {
         let name = request_name(kind);
-        self.ask_recorded(asker, name, Request::Machine(kind, reason.clone()), reason).await
+        let detail = json!({ "request": name, "reason": reason });
+        self.ask_recorded(asker, name, Request::Machine(kind, reason), detail).await
     }
 
     /// A game master says that the person stands on the floor mark.
     pub async fn confirm_origin(&self, asker: &Asker, person: PersonId) -> Result<Answer, NotDelivered> {
-        let name = format!("confirm_origin of {}", self.persons.name(person));
-        self.ask_recorded(asker, &name, Request::ConfirmOrigin(person), None).await
+        self.ask_about(asker, "confirm_origin", person, Request::ConfirmOrigin(person)).await
     }
 
     /// A game master saw that this person, whose headset is lost, has left.
     pub async fn confirm_left(&self, asker: &Asker, person: PersonId) -> Result<Answer, NotDelivered> {
-        let name = format!("confirm_left of {}", self.persons.name(person));
-        let answer = self.ask_recorded(asker, &name, Request::ConfirmLeft(person), None).await?;
+        let answer = self.ask_about(asker, "confirm_left", person, Request::ConfirmLeft(person)).await?;
         if answer.outcome == Outcome::Accepted {
             self.persons.leave(person);
         }
         Ok(answer)
+    }
+
+    /// The reason of an answer, with what the clients call the persons.
+    pub fn reason(&self, answer: &Answer) -> Reason {
+        Reason::new(&answer.reason, &self.persons.names())
     }
 
     /// Press the software stop; the time from `received_at` to the braking command at the drive. It is
@@ -100,8 +105,7 @@ impl App {
         reason: Option<String>,
         received_at: Instant,
     ) -> Result<Duration, NotReached> {
-        let words = reason.clone().unwrap_or_else(|| format!("pressed by {}", asker.author));
-        let reached = self.control.stop(lane, words, received_at).await;
+        let reached = self.control.stop(lane, reason.clone().unwrap_or_default(), received_at).await;
         meters::stop_pressed(lane, reached.as_ref().ok().copied());
         let micros = reached.as_ref().ok().map(|d| d.as_micros() as u64);
         let summary = match micros {
@@ -119,21 +123,35 @@ impl App {
         reached
     }
 
+    async fn ask_about(
+        &self,
+        asker: &Asker,
+        request: &str,
+        person: PersonId,
+        asked: Request,
+    ) -> Result<Answer, NotDelivered> {
+        let name = self.persons.name(person);
+        let detail = json!({ "request": request, "person": person.0, "name": name });
+        self.ask_recorded(asker, &format!("{request} of {name}"), asked, detail).await
+    }
+
+    /// `detail` is what the record has of the request.
     async fn ask_recorded(
         &self,
         asker: &Asker,
         name: &str,
         request: Request,
-        reason: Option<String>,
+        mut detail: Value,
     ) -> Result<Answer, NotDelivered> {
         let answer = self.control.ask(request).await?;
+        let why = self.reason(&answer);
         let kind = if answer.outcome == Outcome::Refused { "request_refused" } else { "request_accepted" };
         let outcome = if answer.outcome == Outcome::Refused { "refused" } else { "accepted" };
-        self.recorder.record(
-            kind,
-            format!("{name} by {}: {outcome}: {}", asker.author, answer.detail),
-            json!({ "request": name, "author": asker.author, "by": asker.by, "reason": reason, "detail": answer.detail }),
-        );
+        detail["author"] = asker.author.as_str().into();
+        detail["by"] = asker.by.into();
+        detail["detail"] = why.to_string().into();
+        detail["why"] = json!(why);
+        self.recorder.record(kind, format!("{name} by {}: {outcome}: {why}", asker.author), detail);
         if self.recorder.settled().await == Settled::Lost {
             tracing::error!(request = name, "an accepted request could not be stored");
         }

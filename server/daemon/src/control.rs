@@ -24,6 +24,7 @@ use covr_engine::snapshot::Snapshot;
 use covr_engine::{Answer, Engine, Outlook, Request};
 use covr_gantry::contract::Gantry;
 use covr_wire::dashboard::ControlLoop;
+use covr_wire::reason::Reason;
 use tokio::sync::{mpsc, oneshot, watch};
 
 pub use stop_lane::{NotReached, StopLane, StopLaneName};
@@ -94,6 +95,16 @@ pub enum NotDelivered {
     /// The control thread is not running.
     #[error("the control loop is not running")]
     NotRunning,
+}
+
+impl NotDelivered {
+    /// For whoever asked.
+    pub const fn reason(self) -> Reason {
+        match self {
+            Self::Busy => Reason::Busy,
+            Self::NotRunning => Reason::ControlNotRunning,
+        }
+    }
 }
 
 /// The ways to the control thread. Cheap to clone.

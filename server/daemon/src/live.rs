@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use covr_engine::engine::outlook::POINT_EVERY;
 use covr_engine::mode::Mode;
-use covr_engine::time::Time;
+use covr_engine::time::{Span, Time};
 use covr_wire::dashboard::{Snapshot, Surroundings, ToDashboard};
 use metrics::{counter, gauge};
 use tokio::sync::watch;
@@ -16,7 +16,7 @@ use crate::meters;
 
 /// The wire's snapshot of a published state, with the way ahead.
 pub async fn wire_snapshot(app: &App, published: &Arc<Published>) -> Snapshot {
-    with_path(app, published, path(published).await)
+    with_path(app, published, path(published).await.0)
 }
 
 fn with_path(app: &App, published: &Published, planned_path_m: Vec<[f64; 2]>) -> Snapshot {
@@ -33,27 +33,34 @@ fn with_path(app: &App, published: &Published, planned_path_m: Vec<[f64; 2]>) ->
     snapshot
 }
 
-/// Milliseconds of arithmetic: not on a thread that serves others. Empty if it was not finished.
-async fn path(published: &Arc<Published>) -> Vec<[f64; 2]> {
+/// Milliseconds of arithmetic: not on a thread that serves others. With the time that it took; empty if it was not finished.
+async fn path(published: &Arc<Published>) -> (Vec<[f64; 2]>, Duration) {
     let published = published.clone();
-    let found = tokio::task::spawn_blocking(move || published.outlook.path());
-    found.await.unwrap_or_default().iter().map(|at| [at.x, at.y]).collect()
+    let found = tokio::task::spawn_blocking(move || {
+        let began = Instant::now();
+        let path = published.outlook.path().iter().map(|at| [at.x, at.y]).collect();
+        (path, began.elapsed())
+    });
+    found.await.unwrap_or_default()
 }
 
-/// The way ahead, for all dashboards: looked at as often as its points are apart, and at once in another mode.
+/// The way ahead, for all dashboards: looked at as often as its points are apart, and at once in another mode. Ways that are
+/// dear to find, with a planner and many people, are looked at less often.
 #[derive(Default)]
 struct Ahead {
     looked: Option<(Mode, Time)>,
+    took: Duration,
     path_m: Vec<[f64; 2]>,
 }
 
 impl Ahead {
     async fn path(&mut self, published: &Arc<Published>) -> Vec<[f64; 2]> {
         let now = (published.snapshot.mode, published.snapshot.at);
-        let is_fresh = |(mode, at): (Mode, Time)| mode == now.0 && now.1 - at < POINT_EVERY;
+        let every = POINT_EVERY.max(Span::from_secs(self.took.as_secs_f64() / MOST_OF_A_CORE));
+        let is_fresh = |(mode, at): (Mode, Time)| mode == now.0 && now.1 - at < every;
         if !self.looked.is_some_and(is_fresh) {
             self.looked = Some(now);
-            self.path_m = path(published).await;
+            (self.path_m, self.took) = path(published).await;
         }
         self.path_m.clone()
     }
@@ -81,6 +88,9 @@ pub async fn publish(app: Arc<App>, frames: watch::Sender<Arc<str>>) {
         }
     }
 }
+
+/// What looking ahead may take of a core: dashboards are promised 5 % in all.
+const MOST_OF_A_CORE: f64 = 0.03;
 
 /// Metrics, at most four times a second.
 struct Meter {

@@ -9,7 +9,7 @@ use clap::Parser;
 use covr_server::cli::{Check, Cli, Command, Health, Serve, Visitor};
 use covr_server::config::{self, Config};
 use covr_server::prove::Prove;
-use covr_server::serve::{Reach, Server, stop_at_signal, told_by_signal};
+use covr_server::serve::{Reach, Server, stop_at_signal, stop_signal, told_by_signal};
 use covr_server::{evaluate, explain, fit, logs, prove, visitor};
 use covr_wire::scene::parse_scene;
 
@@ -43,8 +43,10 @@ fn serve(options: Serve) -> anyhow::Result<()> {
     let _logs = logs::start(&loaded.config.log)?;
     let reach = if options.insecure_lan { Reach::InsecureLan } else { Reach::ThisMachine };
     runtime()?.block_on(async {
+        // Before anybody can know of the server: without a listener the signal would end the process.
+        let presses = stop_signal()?;
         let server = Server::start(loaded, reach).await?;
-        tokio::spawn(stop_at_signal(server.app().clone()));
+        tokio::spawn(stop_at_signal(server.app().clone(), presses));
         server.run_until(told_by_signal()).await
     })
 }

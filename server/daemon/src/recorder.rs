@@ -9,6 +9,7 @@ use covr_engine::event::EventKind;
 use covr_engine::mode::Mode;
 use covr_engine::time::Time;
 use covr_wire::dashboard::{Event, MachineShape};
+use covr_wire::reason::{Reason, latch_record};
 use serde_json::Value;
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
@@ -184,10 +185,11 @@ impl Task {
                 let at = self.desk.clock.wall_text(event.at);
                 let objects: Vec<String> =
                     scene.spec().objects.iter().map(|object| object.id.clone()).collect();
-                let shown = Event::new(&event, at.clone(), &self.desk.persons.names(), &objects);
+                let names = self.desk.persons.names();
+                let shown = Event::new(&event, at.clone(), &names, &objects);
                 // The session's first event belongs to it, and so does its last.
-                let change = if let EventKind::ModeChanged { from, to, because } = &event.kind {
-                    Some((*from, *to, because.clone()))
+                let change = if let EventKind::ModeChanged { from, to, rule, because } = &event.kind {
+                    Some((*from, *to, latch_record(*rule, because, Reason::new(because, &names))))
                 } else {
                     None
                 };
@@ -198,8 +200,8 @@ impl Task {
                     self.begin_session(&at, event.at).await;
                 }
                 self.add(shown);
-                if let Some((from, to, because)) = change {
-                    self.mode_changed(&at, event.at, from, to, &because).await;
+                if let Some((from, to, record)) = change {
+                    self.mode_changed(&at, event.at, from, to, &record).await;
                 }
             }
             Record::Settle(done) => {
@@ -234,9 +236,9 @@ impl Task {
         self.check(done, "events");
     }
 
-    async fn mode_changed(&mut self, at: &str, time: Time, from: Mode, to: Mode, because: &str) {
+    async fn mode_changed(&mut self, at: &str, time: Time, from: Mode, to: Mode, record: &str) {
         if to == Mode::LatchedStop {
-            let done = self.desk.store.set_latched(Some(because)).await;
+            let done = self.desk.store.set_latched(Some(record)).await;
             self.check(done, "the latched stop");
         } else if from == Mode::LatchedStop {
             let done = self.desk.store.set_latched(None).await;

@@ -16,8 +16,10 @@ use covr_gantry::contract::Gantry;
 use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::MachineParameters;
 use covr_wire::dashboard::MachineShape;
+use covr_wire::reason::last_run;
 use covr_wire::scene::parse_scene;
 use tokio::net::TcpListener;
+use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::{Semaphore, watch};
 use tokio::task::JoinHandle;
 
@@ -79,8 +81,8 @@ impl Server {
                 "the last run was interrupted in a session"
             );
         }
-        if let Some(because) = &left_over.latched_because {
-            tracing::warn!(because, "the last run ended in a latched stop; reset it to go on");
+        if let Some(record) = &left_over.latched_because {
+            tracing::warn!("{}; reset it to go on", last_run(record));
         }
         let active = active_scene(&store, left_over.active_scene).await?;
         let priors = store.priors_in_force().await?;
@@ -251,7 +253,6 @@ impl Server {
 
 /// SIGINT or SIGTERM; the reason to end.
 pub async fn told_by_signal() -> String {
-    use tokio::signal::unix::{SignalKind, signal};
     let (Ok(mut interrupt), Ok(mut terminate)) =
         (signal(SignalKind::interrupt()), signal(SignalKind::terminate()))
     else {
@@ -264,17 +265,17 @@ pub async fn told_by_signal() -> String {
     }
 }
 
-/// Press the stop at each SIGUSR1, for as long as the server runs.
-pub async fn stop_at_signal(app: Arc<App>) {
-    use tokio::signal::unix::{SignalKind, signal};
-    let Ok(mut pressed) = signal(SignalKind::user_defined1()) else {
-        tracing::error!("cannot listen for SIGUSR1");
-        return;
-    };
+/// Listen for SIGUSR1 from now on.
+pub fn stop_signal() -> std::io::Result<Signal> {
+    signal(SignalKind::user_defined1())
+}
+
+/// Press the stop at each of these signals, for as long as the server runs.
+pub async fn stop_at_signal(app: Arc<App>, mut pressed: Signal) {
     while pressed.recv().await.is_some() {
         let received_at = std::time::Instant::now();
         let asker = crate::app::Asker { by: "signal", author: "SIGUSR1".into() };
-        match app.stop(&asker, StopLaneName::Signal, None, received_at).await {
+        match app.stop(&asker, StopLaneName::Signal, Some("SIGUSR1".into()), received_at).await {
             Ok(to_drive) => tracing::warn!(to_drive_micros = to_drive.as_micros() as u64, "SIGUSR1: stopped"),
             Err(why) => tracing::error!(%why, "SIGUSR1: the stop was not acknowledged"),
         }

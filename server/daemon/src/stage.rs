@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use covr_engine::reason::Reason;
 use covr_engine::scene::Scene;
 use covr_engine::{Answer, Outcome, Request};
 use covr_wire::scene::{SceneDocument, SceneError, build_scene};
@@ -40,8 +41,8 @@ pub enum PriorsRefused {
     #[error("{} of the priors cannot be set", .0.len())]
     Invalid(Vec<BadPrior>),
     /// The engine refused.
-    #[error("{0}")]
-    Refused(String),
+    #[error("the engine refused: {0:?}")]
+    Refused(Reason),
     /// The engine was not reached.
     #[error(transparent)]
     NotDelivered(#[from] NotDelivered),
@@ -68,8 +69,8 @@ pub enum ActivationRefused {
     #[error("the stored scene does not pass today's checks")]
     Invalid(Vec<SceneError>),
     /// The engine refused.
-    #[error("{0}")]
-    Refused(String),
+    #[error("the engine refused: {0:?}")]
+    Refused(Reason),
     /// The engine was not reached.
     #[error(transparent)]
     NotDelivered(#[from] NotDelivered),
@@ -171,9 +172,9 @@ impl Stage {
         let mut priors = self.priors.lock().await;
         let active = self.active();
         let to_set = read_priors(wanted, |object| active.index_of(object)).map_err(PriorsRefused::Invalid)?;
-        let Answer { outcome, detail } = control.ask(Request::SetPriors(to_set.clone())).await?;
+        let Answer { outcome, reason } = control.ask(Request::SetPriors(to_set.clone())).await?;
         if outcome == Outcome::Refused {
-            return Err(PriorsRefused::Refused(detail));
+            return Err(PriorsRefused::Refused(reason));
         }
         let mut changes = Vec::new();
         for (index, to) in to_set {
@@ -198,7 +199,7 @@ impl Stage {
         let mut priors = self.priors.lock().await;
         let answer = control.ask(Request::ActivateScene(next.scene.clone())).await?;
         if answer.outcome == Outcome::Refused {
-            return Err(ActivationRefused::Refused(answer.detail));
+            return Err(ActivationRefused::Refused(answer.reason));
         }
         *priors = next.document_priors();
         let key = next.key();

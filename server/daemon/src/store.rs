@@ -33,7 +33,7 @@ pub struct Store {
 /// What the last run left for this one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeftOver {
-    /// It ended in a latched stop, for this reason.
+    /// It ended in a latched stop, which left this record (`covr_wire::reason::latch_record`).
     pub latched_because: Option<String>,
     /// The active scene's id and version.
     pub active_scene: Option<(i64, i64)>,

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use covr_server::config;
 use covr_server::http::{Answered, PriorsPreview, Problem, SceneStored, StopAcknowledged};
 use ts_rs::{Config, TS};
 
@@ -35,7 +36,15 @@ fn generate() -> BTreeMap<String, String> {
     SceneStored::export_all(&config).expect("a stored scene");
     Problem::export_all(&config).expect("a problem");
     PriorsPreview::export_all(&config).expect("a preview");
-    read(out.path())
+    let mut files = read(out.path());
+    files.insert("configKeys.json".into(), config_keys());
+    files
+}
+
+/// Every configuration key with its meaning, for the test of the page's French catalogue.
+fn config_keys() -> String {
+    let keys: BTreeMap<_, _> = config::keys().into_iter().map(|key| (key.name, key.meaning)).collect();
+    format!("{}\n", serde_json::to_string_pretty(&keys).expect("texts as JSON"))
 }
 
 fn read(folder: &Path) -> BTreeMap<String, String> {

@@ -18,11 +18,12 @@ use crate::motion::MotionName;
 use crate::motion::standing::StandingName;
 use crate::observation::{Observation, PersonId};
 use crate::person::Person;
+use crate::reason::Reason;
 use crate::safety::governor::Governor;
 use crate::safety::parameters::Parameters;
 use crate::safety::path::State;
 use crate::safety::separation::{KeptFrom, Separation, Threat};
-use crate::safety::supervisor::{Demand, Supervisor, Watched, clears_when};
+use crate::safety::supervisor::{Demand, Supervisor, Watched};
 use crate::safety::vetted::Vetted;
 use crate::scene::Scene;
 use crate::snapshot::{RuleId, StopCause};
@@ -52,7 +53,7 @@ pub struct EngineConfig {
     pub kept_from: KeptFrom,
     /// v_h of the separation rule, m/s.
     pub v_h_mps: f64,
-    /// Start latched, with this reason: the last run ended in a latched stop.
+    /// Start latched: the last run ended in a latched stop and left this record, which the engine hands on unread.
     pub latched_because: Option<String>,
 }
 
@@ -118,8 +119,8 @@ impl Engine {
             scene,
             config,
         };
-        if let Some(reason) = engine.config.latched_because.clone() {
-            engine.latch(RuleId(4), format!("the last run ended in a latched stop: {reason}"), Time::ZERO);
+        if let Some(record) = engine.config.latched_because.clone() {
+            engine.latch(RuleId(4), Reason::LastRunLatched(record), Time::ZERO);
         }
         engine
     }
@@ -295,7 +296,7 @@ impl Engine {
             None if self.mode == Mode::ProtectiveStop => {
                 let since = *self.quiet_since.get_or_insert(now);
                 if now - since >= self.parameters.clears_after {
-                    self.enter(self.resumes, "the cause of the protective stop is gone", now);
+                    self.enter(self.resumes, None, Reason::ProtectiveStopOver, now);
                 }
             }
             _ => {}
@@ -308,12 +309,14 @@ impl Engine {
         let begun = now - self.mode_since > self.parameters.link;
         let rests = self.rests(now);
         match (self.mode, homing) {
-            (Mode::Homing, Some(Homing::Homed)) if begun && rests => self.enter(Mode::Ready, "homed", now),
+            (Mode::Homing, Some(Homing::Homed)) if begun && rests => {
+                self.enter(Mode::Ready, None, Reason::HomingDone, now)
+            }
             (
                 Mode::Ready | Mode::Following | Mode::ProtectiveStop,
                 Some(Homing::NotHomed | Homing::Failed),
             ) if self.governor.is_some() => {
-                self.latch(RuleId(7), "the machine has lost its home".to_owned(), now);
+                self.latch(RuleId(7), Reason::HomeLost, now);
             }
             _ => {}
         }
@@ -353,27 +356,26 @@ impl Engine {
         })
     }
 
-    fn latch(&mut self, rule: RuleId, reason: String, now: Time) {
+    fn latch(&mut self, rule: RuleId, reason: Reason, now: Time) {
         if rule == RuleId(4) {
-            self.supervisor.software_stop(true, &reason, now, &mut self.pending);
+            self.supervisor.software_stop(Some(&reason), now, &mut self.pending);
         }
         self.enter_stop(Mode::LatchedStop, rule, reason, now);
     }
 
-    fn enter_stop(&mut self, to: Mode, rule: RuleId, reason: String, now: Time) {
-        let because = format!("{}: {reason}", rule.name());
-        self.enter(to, &because, now);
-        self.stop = Some(StopCause { rule, reason, clears_when: clears_when(rule).to_owned(), since: now });
+    fn enter_stop(&mut self, to: Mode, rule: RuleId, reason: Reason, now: Time) {
+        self.enter(to, Some(rule), reason.clone(), now);
+        self.stop = Some(StopCause { rule, reason, since: now });
     }
 
-    fn enter(&mut self, to: Mode, because: &str, now: Time) {
+    fn enter(&mut self, to: Mode, rule: Option<RuleId>, because: Reason, now: Time) {
         self.quiet_since = None;
         self.stop = None;
         if matches!(to, Mode::Disarmed | Mode::LatchedStop | Mode::Faulted) {
             self.arena_confirmed_clear = false;
         }
         if to != self.mode {
-            self.pending.push(EventKind::ModeChanged { from: self.mode, to, because: because.to_owned() });
+            self.pending.push(EventKind::ModeChanged { from: self.mode, to, rule, because });
             self.mode = to;
         }
         self.mode_since = now;

@@ -2,6 +2,7 @@
 
 use crate::mode::Mode;
 use crate::observation::PersonId;
+use crate::reason::Reason;
 use crate::snapshot::RuleId;
 use crate::time::Time;
 
@@ -23,15 +24,17 @@ pub enum EventKind {
         from: Mode,
         /// After.
         to: Mode,
-        /// Why, in plain words.
-        because: String,
+        /// The safety rule that led to it; none when it was asked or done.
+        rule: Option<RuleId>,
+        /// Why.
+        because: Reason,
     },
     /// A rule was breached.
     RuleBreached {
         /// Which.
         rule: RuleId,
-        /// Why, with values and units.
-        reason: String,
+        /// Why.
+        reason: Reason,
     },
     /// A breached rule is kept again.
     RuleCleared {

@@ -11,6 +11,8 @@
 //!
 //! It never moves anything: it says what is allowed. Reset starts nothing; arming is a second act.
 
+use crate::reason::Reason;
+
 /// The state of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Mode {
@@ -95,60 +97,52 @@ pub struct Conditions {
     /// The column still moves: who takes it over now could not go on braking as hard as it does.
     pub moves: bool,
     /// Why a latched stop or a fault cannot be left yet: its cause is still there.
-    pub cause_still_there: Option<String>,
+    pub cause_still_there: Option<Reason>,
 }
 
 /// What the table says.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Response {
     /// Accepted: the machine goes to this mode.
     Go(Mode),
-    /// It is so already, in these words.
-    AlreadySo(&'static str),
+    /// It is so already, in this way.
+    AlreadySo(Reason),
     /// Refused, for this reason.
-    Refuse(String),
+    Refuse(Reason),
 }
 
 /// The table: every mode times every request.
 pub fn respond(mode: Mode, request: RequestKind, conditions: &Conditions) -> Response {
     use Mode::{Disarmed, Faulted, Following, Homing, LatchedStop, ProtectiveStop, Ready};
     use RequestKind::{Arm, Disarm, Home, Reset, Stop};
-    use Response::{AlreadySo, Go};
+    use Response::{AlreadySo, Go, Refuse};
     match (mode, request) {
-        (LatchedStop, Stop) => AlreadySo("stopped already; the stop is latched"),
+        (LatchedStop, Stop) => AlreadySo(Reason::StoppedAlready),
         (_, Stop) => Go(LatchedStop),
 
-        (Disarmed | Ready, Home | Arm) if conditions.moves => {
-            refuse("the column still moves: wait until it rests")
-        }
+        (Disarmed | Ready, Home | Arm) if conditions.moves => Refuse(Reason::WaitForRest),
         (Disarmed | Ready, Home) => Go(Homing),
-        (Homing, Home) => AlreadySo("homing already"),
-        (Following | ProtectiveStop, Home) => refuse("the machine is armed: disarm first"),
-        (LatchedStop | Faulted, Home | Arm) => refuse("the machine is stopped: reset first"),
+        (Homing, Home) => AlreadySo(Reason::HomingAlready),
+        (Following | ProtectiveStop, Home) => Refuse(Reason::DisarmFirst),
+        (LatchedStop | Faulted, Home | Arm) => Refuse(Reason::ResetFirst),
 
-        (Disarmed, Arm) if !conditions.homed => refuse("not homed: home first"),
+        (Disarmed, Arm) if !conditions.homed => Refuse(Reason::HomeFirst),
         (Disarmed | Ready, Arm) => Go(Following),
-        (Homing, Arm) => refuse("homing: wait until it is done"),
-        (Following, Arm) => AlreadySo("armed already"),
-        (ProtectiveStop, Arm) => AlreadySo("armed already; the protective stop clears by itself"),
+        (Homing, Arm) => Refuse(Reason::WaitForHoming),
+        (Following, Arm) => AlreadySo(Reason::ArmedAlready),
+        (ProtectiveStop, Arm) => AlreadySo(Reason::ArmedInProtectiveStop),
 
         (Homing | Ready | Following | ProtectiveStop, Disarm) => Go(Disarmed),
-        (Disarmed, Disarm) => AlreadySo("disarmed already"),
-        (LatchedStop | Faulted, Disarm) => {
-            AlreadySo("the drive is released already; leave the stop by reset")
-        }
+        (Disarmed, Disarm) => AlreadySo(Reason::DisarmedAlready),
+        (LatchedStop | Faulted, Disarm) => AlreadySo(Reason::ReleasedAlready),
 
         (LatchedStop | Faulted, Reset) => match &conditions.cause_still_there {
-            Some(cause) => Response::Refuse(format!("the cause is still there: {cause}")),
+            Some(cause) => Refuse(cause.clone()),
             None => Go(Disarmed),
         },
-        (ProtectiveStop, Reset) => refuse("a protective stop clears by itself when its cause is gone"),
-        (Disarmed | Homing | Ready | Following, Reset) => AlreadySo("nothing to reset"),
+        (ProtectiveStop, Reset) => Refuse(Reason::ClearsByItself),
+        (Disarmed | Homing | Ready | Following, Reset) => AlreadySo(Reason::NothingToReset),
     }
-}
-
-fn refuse(why: &str) -> Response {
-    Response::Refuse(why.to_owned())
 }
 
 #[cfg(test)]
@@ -156,14 +150,14 @@ mod tests {
     use super::*;
     use Response::{AlreadySo, Go, Refuse};
 
-    fn conditions(homed: bool, cause: Option<&str>) -> Conditions {
-        Conditions { homed, moves: false, cause_still_there: cause.map(str::to_owned) }
+    fn conditions(homed: bool, cause: Option<Reason>) -> Conditions {
+        Conditions { homed, moves: false, cause_still_there: cause }
     }
 
     #[test]
     fn stop_is_accepted_in_every_mode() {
         for mode in Mode::ALL {
-            let response = respond(mode, RequestKind::Stop, &conditions(false, Some("x")));
+            let response = respond(mode, RequestKind::Stop, &conditions(false, Some(Reason::NoAnswerYet)));
             let stops = matches!(response, Go(Mode::LatchedStop)) || mode == Mode::LatchedStop;
             assert!(stops && !matches!(response, Refuse(_)), "{mode:?}: {response:?}");
         }
@@ -235,8 +229,8 @@ mod tests {
     #[test]
     fn a_reset_needs_the_cause_gone() {
         for mode in [Mode::LatchedStop, Mode::Faulted] {
-            let response = respond(mode, RequestKind::Reset, &conditions(true, Some("no answer")));
-            assert_eq!(response, Refuse("the cause is still there: no answer".into()));
+            let response = respond(mode, RequestKind::Reset, &conditions(true, Some(Reason::NoAnswerYet)));
+            assert_eq!(response, Refuse(Reason::NoAnswerYet));
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::frames::{Floor, Planar, Pose, Room};
 use crate::mode::{Mode, RequestKind};
 use crate::observation::PersonId;
+use crate::reason::Reason;
 use crate::safety::separation::Terms;
 use crate::time::Time;
 
@@ -18,7 +19,7 @@ pub struct Snapshot {
     /// Why the machine is stopped, in a stop.
     pub stop: Option<StopCause>,
     /// For each request: none if it would be accepted now, else why not.
-    pub refusals: Vec<(RequestKind, Option<String>)>,
+    pub refusals: Vec<(RequestKind, Option<Reason>)>,
     /// Every safety rule, in the order of their numbers.
     pub rules: Vec<RuleState>,
     /// The column.
@@ -29,8 +30,12 @@ pub struct Snapshot {
     pub objects: Vec<ObjectState>,
     /// The intention rule in use, by name.
     pub intention_rule: &'static str,
+    /// Where the column stands while it is not plain what will be touched, by name.
+    pub standing: &'static str,
     /// How the column is moved, by name.
     pub motion: &'static str,
+    /// The share of the weight that says "none of them", where the rule knows it; else 0.
+    pub none_probability: f64,
 }
 
 /// A safety rule's id, R1 to R16.
@@ -42,10 +47,8 @@ pub struct RuleId(pub u8);
 pub struct StopCause {
     /// The rule.
     pub rule: RuleId,
-    /// In plain words: what happened.
-    pub reason: String,
-    /// In plain words: what clears it.
-    pub clears_when: String,
+    /// What happened. What clears it is the same for every stop of a rule.
+    pub reason: Reason,
     /// When.
     pub since: Time,
 }
@@ -70,8 +73,8 @@ pub struct RuleState {
     pub rule: RuleId,
     /// How it stands.
     pub status: RuleStatus,
-    /// In plain words, with values and units.
-    pub reason: String,
+    /// Why.
+    pub reason: Reason,
     /// Since when it has stood so.
     pub since: Time,
 }
@@ -101,6 +104,11 @@ pub struct ColumnState {
     pub held_by: Option<HeldBy>,
     /// It is led around somebody who stands in its way.
     pub goes_around: bool,
+    /// When it will be where it is wanted by the way that it takes now, s from now; none when nobody is served, and
+    /// when the way does not lead there as far ahead as the planner looks.
+    pub arrival_secs: Option<f64>,
+    /// When it could be there at its limits with nobody in the way, s from now; none when nobody is served.
+    pub least_arrival_secs: Option<f64>,
     /// Motor currents x, y, A.
     pub current_amps: [f64; 2],
     /// Positions are in the room frame.
@@ -194,6 +202,10 @@ pub struct ObjectState {
     pub arrival_secs: f64,
     /// When the visitor's head could be within reach of it at their present pace, s from now; none without a visitor.
     pub touch_secs: Option<f64>,
+    /// Between the visitor's view axis and it, rad; none without a visitor.
+    pub angle_rad: Option<f64>,
+    /// From the visitor's head to its surface, m; none without a visitor.
+    pub distance_m: Option<f64>,
 }
 
 impl RuleId {

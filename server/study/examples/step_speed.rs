@@ -5,7 +5,7 @@ use std::error::Error;
 use std::io::Write;
 use std::time::Instant;
 
-use covr_study::workload::{Load, Workload};
+use covr_study::workload::{Deciding, Load, Workload};
 use covr_wire::dashboard::{ControlLoop, Snapshot, Surroundings};
 
 /// Two minutes of people.
@@ -16,9 +16,12 @@ const LOOKS: u64 = 2_000;
 fn main() -> Result<(), Box<dyn Error>> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "persons objects meshes |     median       p99       max   inputs p50  us")?;
-    let few_meshes = |objects| Load { persons: 1, objects, meshes: 0, triangles: 0, seed: 1 };
+    let few_meshes = |objects| Load { objects, ..Load::USUAL };
     let growth = [50, 100, 200, 400].map(few_meshes);
-    for load in [Load::USUAL, Load::GREATEST].into_iter().chain(growth) {
+    let ours = |load| Load { deciding: Deciding::Ours, ..load };
+    for load in
+        [Load::USUAL, ours(Load::USUAL), Load::GREATEST, ours(Load::GREATEST)].into_iter().chain(growth)
+    {
         let mut workload = Workload::following(&load)?;
         let (mut steps, mut inputs) = (Vec::with_capacity(STEPS), Vec::with_capacity(STEPS));
         for _ in 0..STEPS {
@@ -32,17 +35,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         steps.sort_by(f64::total_cmp);
         inputs.sort_by(f64::total_cmp);
-        let Load { persons, objects, meshes, .. } = load;
+        let Load { persons, objects, meshes, deciding, .. } = load;
         let (median, p99, max) = (steps[STEPS / 2], steps[STEPS * 99 / 100], steps[STEPS - 1]);
         let inputs = inputs[STEPS / 2];
         writeln!(
             out,
-            "{persons:7} {objects:7} {meshes:6} | {median:10.2} {p99:9.2} {max:9.2} {inputs:10.2}"
+            "{persons:7} {objects:7} {meshes:6} {deciding:?} | {median:10.2} {p99:9.2} {max:9.2} {inputs:10.2}"
         )?;
     }
     let looks = "snapshot JSON bytes |   snapshot   wire+JSON     outlook        path   preview  us, median; path p90";
     writeln!(out, "persons objects meshes {looks}")?;
-    for load in [Load::USUAL, Load::GREATEST] {
+    for load in [Load::USUAL, ours(Load::USUAL), Load::GREATEST, ours(Load::GREATEST)] {
         look(&load, &mut out)?;
     }
     Ok(())
@@ -62,6 +65,7 @@ fn look(load: &Load, out: &mut impl Write) -> Result<(), Box<dyn Error>> {
             lateness_p99_micros: 80.0,
             lateness_max_micros: 120.0,
             scheduling: "normal".into(),
+            scheduling_why: Vec::new(),
         };
         let clients = Vec::new();
         let around = Surroundings {
@@ -92,10 +96,10 @@ fn look(load: &Load, out: &mut impl Write) -> Result<(), Box<dyn Error>> {
     times.iter_mut().for_each(|times| times.sort_by(f64::total_cmp));
     let path_p90 = times[3][LOOKS as usize * 9 / 10];
     let [snapshot, written, outlook, path, preview] = times.map(|times| times[LOOKS as usize / 2]);
-    let Load { persons, objects, meshes, .. } = load;
+    let Load { persons, objects, meshes, deciding, .. } = load;
     writeln!(
         out,
-        "{persons:7} {objects:7} {meshes:6} {bytes:19} | {snapshot:10.2} {written:11.2} {outlook:11.2} {path:11.2} \
+        "{persons:7} {objects:7} {meshes:6} {deciding:?} {bytes:13} | {snapshot:10.2} {written:11.2} {outlook:11.2} {path:11.2} \
          {preview:9.2}  {path_p90:10.2}"
     )?;
     Ok(())

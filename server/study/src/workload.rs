@@ -37,6 +37,17 @@ pub struct Load {
     pub triangles: u32,
     /// Decides places and walks.
     pub seed: u64,
+    /// What decides, and how the column is moved.
+    pub deciding: Deciding,
+}
+
+/// What decides about the column, from the belief to the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Deciding {
+    /// The paper's best rule, the mean of the places, the proxy on a spring.
+    Papers,
+    /// The server's default: the filter, the standing place of least loss, the planner.
+    Ours,
 }
 
 /// The engine with its load, a machine that does what it is told, and people.
@@ -69,9 +80,11 @@ struct Headset {
 
 impl Load {
     /// One person and ten objects: a usual scene.
-    pub const USUAL: Self = Self { persons: 1, objects: 10, meshes: 0, triangles: 0, seed: 1 };
+    pub const USUAL: Self =
+        Self { persons: 1, objects: 10, meshes: 0, triangles: 0, seed: 1, deciding: Deciding::Papers };
     /// Five persons and two hundred objects, twenty of them meshes of 5,000 triangles: the greatest that is promised.
-    pub const GREATEST: Self = Self { persons: 5, objects: 200, meshes: 20, triangles: 5_000, seed: 1 };
+    pub const GREATEST: Self =
+        Self { persons: 5, objects: 200, meshes: 20, triangles: 5_000, seed: 1, deciding: Deciding::Papers };
 
     /// The scene of this load.
     pub fn scene(&self) -> SceneSpec {
@@ -104,13 +117,17 @@ impl Workload {
         });
         let headsets = headsets.collect();
         let scene = Scene::build(spec).map_err(NoWorkload::Scene)?;
+        let (intention_rule, motion) = match load.deciding {
+            Deciding::Papers => (RuleName::PaperBest, MotionName::Proxy),
+            Deciding::Ours => (RuleName::Bayes, MotionName::Planner),
+        };
         let config = EngineConfig {
             limits: Limits::PAPER,
             travel: ROOM,
             period: PERIOD,
-            intention_rule: RuleName::PaperBest,
+            intention_rule,
             intention: IntentionParameters::default(),
-            motion: MotionName::Proxy,
+            motion,
             standing: None,
             kept_from: KeptFrom::Everybody,
             v_h_mps: 1.6,
@@ -285,7 +302,8 @@ mod tests {
 
     #[test]
     fn a_boulder_is_closed_and_knows_its_inside() {
-        let load = Load { persons: 0, objects: 1, meshes: 1, triangles: 200, seed: 3 };
+        let load =
+            Load { persons: 0, objects: 1, meshes: 1, triangles: 200, seed: 3, deciding: Deciding::Papers };
         let spec = load.scene();
         let centre = spec.objects[0].position;
         let scene = Scene::build(spec).unwrap();
@@ -296,9 +314,14 @@ mod tests {
 
     #[test]
     fn it_follows_people_who_walk_and_is_the_same_each_time() {
-        let load = Load { persons: 3, objects: 12, meshes: 2, triangles: 128, seed: 5 };
+        for deciding in [Deciding::Papers, Deciding::Ours] {
+            follows_people(&Load { persons: 3, objects: 12, meshes: 2, triangles: 128, seed: 5, deciding });
+        }
+    }
+
+    fn follows_people(load: &Load) {
         let ended = || {
-            let mut workload = Workload::following(&load).unwrap();
+            let mut workload = Workload::following(load).unwrap();
             let from = workload.engine().snapshot(workload.now());
             workload.run(5_000);
             assert_eq!(workload.engine().mode(), Mode::Following);

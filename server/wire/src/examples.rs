@@ -20,6 +20,7 @@ use crate::dashboard::{
     Client, Event, FromDashboard, LinkThresholds, MachineRequest, MachineShape, Outcome, Snapshot,
     Surroundings, ToDashboard,
 };
+use crate::reason::Reason;
 use crate::sample;
 use crate::scene::SceneDocument;
 
@@ -152,13 +153,15 @@ pub fn to_dashboard() -> Vec<ToDashboard> {
         ToDashboard::Answer {
             request_id: 7,
             outcome: Outcome::Accepted,
-            detail: "stopped".into(),
+            detail: Reason::Stopped.to_string(),
+            why: Some(Reason::Stopped),
             to_drive_micros: Some(2_130),
         },
         ToDashboard::Answer {
             request_id: 9,
             outcome: Outcome::Refused,
-            detail: "a reset needs a reason".into(),
+            detail: Reason::ResetNeedsReason.to_string(),
+            why: Some(Reason::ResetNeedsReason),
             to_drive_micros: None,
         },
     ]

@@ -1,5 +1,6 @@
 //! covr-wire: the messages of clients and dashboards, scenes as serialised, frame conversion. Pure.
 
+pub mod accepts;
 pub mod answers;
 pub mod client;
 pub mod clock;
@@ -8,6 +9,7 @@ pub mod convention;
 pub mod dashboard;
 pub mod examples;
 pub mod link;
+pub mod reason;
 pub mod records;
 mod sample;
 pub mod scene;

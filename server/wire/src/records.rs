@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
+use crate::accepts::Accepts;
 use crate::dashboard::{Activity, Column, MachineShape, Mode, Object, Person, Snapshot};
 
 /// The published state at one moment of a session, room frame.
@@ -196,8 +197,10 @@ pub struct ConfigKey {
     pub default: serde_json::Value,
     /// What it means, with units.
     pub meaning: String,
-    /// What it accepts, for people.
+    /// What it accepts, in English.
     pub accepts: String,
+    /// The same as data.
+    pub takes: Accepts,
     /// Who set it.
     pub from: ConfigOrigin,
 }

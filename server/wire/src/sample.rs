@@ -3,6 +3,7 @@
 use covr_engine::frames::{Floor, Planar, Point, Pose};
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::observation::PersonId;
+use covr_engine::reason::Reason;
 use covr_engine::safety::separation::Terms;
 use covr_engine::scene::Scene;
 use covr_engine::snapshot::{
@@ -12,6 +13,7 @@ use covr_engine::time::Time;
 use nalgebra::UnitQuaternion;
 
 use crate::dashboard::ControlLoop;
+use crate::reason::Reason as WireReason;
 use crate::scene::{SceneDocument, build_scene, parse_scene};
 
 pub(crate) const SCENE: &str = r#"{
@@ -43,7 +45,8 @@ pub(crate) fn control_loop() -> ControlLoop {
         missed_deadlines: 0,
         lateness_p99_micros: 80.0,
         lateness_max_micros: 120.0,
-        scheduling: "normal".into(),
+        scheduling: WireReason::RealTimeNotAsked.to_string(),
+        scheduling_why: vec![WireReason::RealTimeNotAsked],
     }
 }
 
@@ -76,6 +79,8 @@ pub(crate) fn snapshot() -> Snapshot {
         column_place: Floor::new(if id == "kettle" { 0.9 } else { 3.0 }, 3.0),
         arrival_secs: 2.0,
         touch_secs,
+        angle_rad: touch_secs.map(|_| 0.07),
+        distance_m: touch_secs.map(|_| 1.2),
     };
     let looking = Pose {
         position: Point::new(2.0, 1.0, 1.7),
@@ -85,17 +90,12 @@ pub(crate) fn snapshot() -> Snapshot {
         at,
         mode: Mode::ProtectiveStop,
         mode_since: at,
-        stop: Some(StopCause {
-            rule: RuleId(2),
-            reason: "the pose is 0.6 s old".into(),
-            clears_when: "the headset is tracked again for 1 s".into(),
-            since: at,
-        }),
-        refusals: vec![(RequestKind::Reset, Some("nothing is latched".into()))],
+        stop: Some(StopCause { rule: RuleId(2), reason: Reason::PoseTooOld(PersonId(3), 0.6), since: at }),
+        refusals: vec![(RequestKind::Reset, Some(Reason::NothingToReset))],
         rules: vec![RuleState {
             rule: RuleId(1),
             status: RuleStatus::Clear,
-            reason: String::new(),
+            reason: Reason::InsideTravel,
             since: at,
         }],
         column: ColumnState {
@@ -110,12 +110,16 @@ pub(crate) fn snapshot() -> Snapshot {
             activity: Activity::Stopped,
             held_by: None,
             goes_around: false,
+            arrival_secs: Some(2.0),
+            least_arrival_secs: Some(1.6),
             current_amps: [0.5, 0.4],
             homed: true,
         },
         persons: vec![person(3, Some(looking)), person(8, None)],
         objects: vec![object("kettle", 0.4, Some(1.5)), object("lamp", 0.6, None)],
         intention_rule: "paper",
+        standing: "mean",
         motion: "proxy",
+        none_probability: 0.0,
     }
 }

@@ -40,7 +40,11 @@ pub async fn measure(effort: Effort) -> Vec<Row> {
     let covr = Covr::serve(&program).await;
     covr.home_and_arm().await;
     let walker = walk(&covr.host, 1).await;
-    let rows = vec![memory(&covr, effort).await, processor(&covr, effort).await];
+    let rows = vec![
+        memory(&covr, effort).await,
+        processor(&covr, effort, 1).await,
+        processor(&covr, effort, MANY_DASHBOARDS).await,
+    ];
     walker.abort();
     rows
 }
@@ -81,13 +85,14 @@ async fn memory(covr: &Covr, effort: Effort) -> Row {
     }
 }
 
-async fn processor(covr: &Covr, effort: Effort) -> Row {
+/// What looks ahead is paid once however many look: one dashboard costs most.
+async fn processor(covr: &Covr, effort: Effort, dashboards: usize) -> Row {
     let (rounds, length) = effort.of((3, Duration::from_secs(15)), (1, Duration::from_secs(2)));
     let (mut alone, mut watched) = (Samples::default(), Samples::default());
     for _ in 0..rounds {
         alone.add(covr.cores_over(length).await);
         let mut readers = Vec::new();
-        for _ in 0..DASHBOARDS {
+        for _ in 0..dashboards {
             let mut dashboard = Dashboard::connect(&covr.host).await;
             readers
                 .push(tokio::spawn(async move { while let Some(Ok(_)) = dashboard.socket.next().await {} }));
@@ -99,12 +104,12 @@ async fn processor(covr: &Covr, effort: Effort) -> Row {
         }
         tokio::time::sleep(Duration::from_millis(500)).await;
     }
-    let each = 100.0 * (watched.mean() - alone.mean()) / DASHBOARDS as f64;
+    let each = 100.0 * (watched.mean() - alone.mean()) / dashboards as f64;
     Row {
-        what: "server's processor time a dashboard".into(),
+        what: format!("server's processor time a dashboard, {dashboards} connected"),
         figure: format!("{each:.2} % of a core"),
         beside: format!(
-            "whole process: {:.1} % with none, {:.1} % with {DASHBOARDS}",
+            "whole process: {:.1} % with none, {:.1} % with them",
             100.0 * alone.mean(),
             100.0 * watched.mean()
         ),
@@ -112,7 +117,7 @@ async fn processor(covr: &Covr, effort: Effort) -> Row {
         limit: CPU_LIMIT.into(),
         met: Some(each < 5.0),
         how: format!(
-            "{rounds} turns of {length:?} with none and with {DASHBOARDS} that read everything; one person at 90 Hz"
+            "{rounds} turns of {length:?} with none and with {dashboards} that read everything; one person at 90 Hz, default rule and motion"
         ),
     }
 }
@@ -269,6 +274,6 @@ fn line(points: &[(f64, f64)]) -> (f64, f64) {
 
 /// Ticks a second in /proc: part of the interface of Linux to programs, whatever the kernel's own rate.
 const USER_HZ: f64 = 100.0;
-const DASHBOARDS: usize = 20;
+const MANY_DASHBOARDS: usize = 20;
 const MEMORY_LIMIT: &str = "under 60 MB";
 const CPU_LIMIT: &str = "at most 5 % of a core";

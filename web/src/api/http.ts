@@ -7,6 +7,7 @@ import type {
   PriorChange,
   PriorPreview,
   ProblemDocument,
+  Reason,
   RecordedFrame,
   SceneDocument,
   SceneError,
@@ -18,19 +19,46 @@ import type {
   StopAcknowledged,
   WireEvent,
 } from "./types";
+import { isReason } from "./reason";
 
 /** A refusal, as RFC 9457 has it. */
 export class Problem extends Error {
   readonly status: number;
+  /** What ends its type: `refused`, `not-found`; empty where the answer was no problem document. */
+  readonly kind: string;
   readonly title: string;
+  /** The detail as an id and its values, where it is one of the known reasons. */
+  readonly why: Reason | null;
   readonly errors: readonly SceneError[];
 
-  constructor(status: number, title: string, detail: string, errors: readonly SceneError[]) {
+  constructor(status: number, kind: string, title: string, detail: string, why: Reason | null, errors: readonly SceneError[]) {
     super(detail);
     this.name = "Problem";
     this.status = status;
+    this.kind = kind;
     this.title = title;
+    this.why = why;
     this.errors = errors;
+  }
+}
+
+/** The server was not reached. */
+export class Unreachable extends Error {
+  constructor(cause: unknown) {
+    super("the server was not reached", { cause });
+    this.name = "Unreachable";
+  }
+}
+
+/** The server did not answer in time. */
+export class Unanswered extends Error {
+  /** The deadline, s. */
+  readonly secs: number;
+
+  constructor(secs: number) {
+    super(`no answer within ${secs} s`);
+    this.name = "Unanswered";
+    this.secs = secs;
   }
 }
 
@@ -39,7 +67,7 @@ export async function postStop(
   reason: string | null,
   giveUp: AbortSignal,
 ): Promise<{ acknowledged: boolean; to_drive_micros: number | null }> {
-  const response = await fetch("/api/v1/stop", {
+  const response = await reach("/api/v1/stop", {
     method: "POST",
     headers: { "Content-Type": "application/json" },
     body: JSON.stringify({ reason }),
@@ -85,9 +113,8 @@ export async function listSceneVersions(id: number): Promise<readonly SceneVersi
 }
 
 /** `PUT /api/v1/scenes/{id}/activate`; what it did, in the server's words. */
-export async function activateScene(id: number, version: number, author: string): Promise<string> {
-  const { detail } = record(await call("PUT", `/api/v1/scenes/${id}/activate?version=${version}`, { text: "{}", author }));
-  return typeof detail === "string" ? detail : "";
+export async function activateScene(id: number, version: number, author: string): Promise<void> {
+  await call("PUT", `/api/v1/scenes/${id}/activate?version=${version}`, { text: "{}", author });
 }
 
 /** `PATCH /api/v1/priors`. */
@@ -196,7 +223,7 @@ interface Body {
 async function ask(method: string, path: string, body?: Body, giveUp?: AbortSignal): Promise<Response> {
   const deadline = AbortSignal.timeout(CALL_DEADLINE_MILLIS);
   const author = body === undefined || body.author === "" ? {} : { "X-Covr-Author": encodeURIComponent(body.author) };
-  const response = await fetch(path, {
+  const response = await reach(path, {
     method,
     cache: "no-store",
     signal: giveUp === undefined ? deadline : AbortSignal.any([deadline, giveUp]),
@@ -206,18 +233,29 @@ async function ask(method: string, path: string, body?: Body, giveUp?: AbortSign
   return response;
 }
 
+/** The answer of the server, or the error that tells why there is none. */
+async function reach(path: string, init: RequestInit): Promise<Response> {
+  try {
+    return await fetch(path, init);
+  } catch (error) {
+    if (error instanceof DOMException && error.name === "TimeoutError") throw new Unanswered(CALL_DEADLINE_MILLIS / 1000);
+    throw error instanceof TypeError ? new Unreachable(error) : error;
+  }
+}
+
 async function problemOf(response: Response): Promise<Problem> {
   const fallback = `${response.status} ${response.statusText}`.trim();
   let body: Partial<Record<keyof ProblemDocument, unknown>>;
   try {
     body = record(await response.json());
   } catch {
-    return new Problem(response.status, fallback, fallback, []);
+    return new Problem(response.status, "", fallback, fallback, null, []);
   }
   const title = typeof body.title === "string" ? body.title : fallback;
   const detail = typeof body.detail === "string" ? body.detail : title;
   const errors = Array.isArray(body.errors) ? body.errors.map(sceneErrorOf) : [];
-  return new Problem(response.status, title, detail, errors);
+  const kind = typeof body.type === "string" ? (body.type.split(":").at(-1) ?? "") : "";
+  return new Problem(response.status, kind, title, detail, isReason(body.why) ? body.why : null, errors);
 }
 
 function sceneErrorOf(value: unknown): SceneError {

@@ -1,12 +1,14 @@
 /** The wire's types under one roof. They are generated from the server's sources; nothing here is written by hand:
  * `generated` is what the sockets and the store carry, `answers` what HTTP alone answers. */
 export type {
+  Accepts,
   Activity,
   Client,
   Column,
   ConfigInForce,
   ConfigKey,
   ControlLoop,
+  Decision,
   Event as WireEvent,
   FromDashboard,
   KeepOutDocument,
@@ -20,6 +22,7 @@ export type {
   Person,
   PriorChange,
   PropDocument,
+  Reason,
   RecordedFrame,
   RequestState,
   RuleState,

@@ -4,6 +4,7 @@
  * over a short time, and never across a gap.
  */
 import type { RecordedFrame } from "../api/types";
+import { troubleOf } from "./trouble";
 
 /** A frame at its time, s from the session's start. */
 export interface TimedFrame {
@@ -173,7 +174,7 @@ export class Recording {
     } catch (error) {
       if (window.giveUp.signal.aborted) return;
       window.state = "failed";
-      window.detail = error instanceof Error ? error.message : String(error);
+      window.detail = troubleOf(error);
     }
     this.#changed();
   }

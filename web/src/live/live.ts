@@ -6,6 +6,8 @@ import { createSignal, onCleanup, type Accessor } from "solid-js";
 import { createStore, reconcile } from "solid-js/store";
 import { listEvents, postStop } from "../api/http";
 import type { MachineRequest, Snapshot, WireEvent } from "../api/types";
+import { words } from "../i18n";
+import { troubleOf } from "../lib/trouble";
 import { Connection } from "./connection";
 import { Requests, type Answer } from "./requests";
 import {
@@ -96,9 +98,9 @@ export function createLive(): Live {
       }
       if (action.kind === "closed") requests.lost();
       if (action.kind === "message" && action.message.type === "answer") {
-        const { request_id, outcome, detail, to_drive_micros } = action.message;
-        if (!stopSender.socketAnswered(request_id, outcome, detail, to_drive_micros)) {
-          requests.answered(request_id, outcome, detail);
+        const { request_id, outcome, detail, why, to_drive_micros } = action.message;
+        if (!stopSender.socketAnswered(request_id, outcome, detail, why, to_drive_micros)) {
+          requests.answered(request_id, outcome, detail, why);
         }
       }
     },
@@ -138,7 +140,7 @@ export function createLive(): Live {
     nowMillis,
     stop,
     pressStop: () => {
-      stopSender.press("pressed on the dashboard");
+      stopSender.press(words().shell.stop.pressedHere);
     },
     ask: (request, reason) => requests.ask(request, reason ?? null),
     connectNow: () => {
@@ -166,7 +168,7 @@ async function readPastEvents(apply: (action: LiveAction) => void): Promise<void
   try {
     apply({ kind: "past_events", events: await listEvents(PAST_EVENTS) });
   } catch (error) {
-    apply({ kind: "not_understood", trouble: `past events: ${error instanceof Error ? error.message : String(error)}` });
+    apply({ kind: "not_understood", trouble: words().shell.trouble.pastEvents(troubleOf(error)) });
   }
 }
 

@@ -3,6 +3,7 @@
  * because people walk on.
  */
 import type { PriorPreview } from "../api/types";
+import { troubleOf } from "../lib/trouble";
 
 /** How the preview stands. */
 export type PreviewState =
@@ -64,7 +65,7 @@ export class Previewer {
       const preview = await this.#ask(priors, asking.signal);
       state = { kind: "shown", preview };
     } catch (error) {
-      const why = error instanceof Error ? error.message : String(error);
+      const why = troubleOf(error);
       state = { kind: "failed", why };
     }
     // A question that was overtaken has no say any more.

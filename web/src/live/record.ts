@@ -4,6 +4,7 @@ import { readEvents, type EventPage, type EventQuery } from "../api/http";
 import type { WireEvent } from "../api/types";
 import { kindsOf, merged, passes, type Filter } from "../lib/timeline";
 import type { Live } from "./live";
+import { troubleOf } from "../lib/trouble";
 
 /** What the timeline reads. */
 export interface EventRecord {
@@ -42,7 +43,7 @@ export function createRecord(
       setTrouble(null);
       take(found);
     } catch (error) {
-      if (!mine.signal.aborted) setTrouble(error instanceof Error ? error.message : String(error));
+      if (!mine.signal.aborted) setTrouble(troubleOf(error));
     } finally {
       if (asking === mine) {
         asking = null;

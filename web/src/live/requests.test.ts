@@ -15,10 +15,10 @@ describe("requests", () => {
       { type: "request", request_id: 1, request: "home", reason: null },
       { type: "request", request_id: 2, request: "reset", reason: "cable checked" },
     ]);
-    requests.answered(2, "refused", "nothing to reset");
-    requests.answered(1, "accepted", "homing");
-    expect(await reset).toEqual({ kind: "answered", outcome: "refused", detail: "nothing to reset" });
-    expect(await home).toEqual({ kind: "answered", outcome: "accepted", detail: "homing" });
+    requests.answered(2, "refused", "nothing to reset", { id: "nothing_to_reset" });
+    requests.answered(1, "accepted", "homing", null);
+    expect(await reset).toEqual({ kind: "answered", outcome: "refused", detail: "nothing to reset", why: { id: "nothing_to_reset" } });
+    expect(await home).toEqual({ kind: "answered", outcome: "accepted", detail: "homing", why: null });
   });
 
   it("are reported unanswered: unsent, too late, or cut off; and are never sent again", async () => {
@@ -35,7 +35,7 @@ describe("requests", () => {
     expect((await late).kind).toBe("unanswered");
     const cut = requests.ask("arm", null);
     requests.lost();
-    expect((await cut).detail).toContain("lost");
+    expect(await cut).toEqual({ kind: "unanswered", because: "lost" });
     vi.advanceTimersByTime(60_000);
     expect(sent).toBe(2);
   });

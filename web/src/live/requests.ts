@@ -2,12 +2,15 @@
  * Requests to the machine and their answers. A request that the server does not answer in time is reported as
  * unanswered, never repeated: unlike a stop, it may move the machine.
  */
-import type { FromDashboard, MachineRequest, Outcome } from "../api/types";
+import type { FromDashboard, MachineRequest, Outcome, Reason } from "../api/types";
 
 /** What came of a request. */
 export type Answer =
-  | { readonly kind: "answered"; readonly outcome: Outcome; readonly detail: string }
-  | { readonly kind: "unanswered"; readonly detail: string };
+  | { readonly kind: "answered"; readonly outcome: Outcome; readonly detail: string; readonly why: Reason | null }
+  | { readonly kind: "unanswered"; readonly because: Silence };
+
+/** Why there is no answer. */
+export type Silence = "not_sent" | "too_late" | "lost";
 
 /** Waits for an answer this long, ms. */
 export const ANSWER_DEADLINE_MILLIS = 3000;
@@ -32,12 +35,12 @@ export class Requests {
   ask(request: MachineRequest, reason: string | null): Promise<Answer> {
     const requestId = this.newId();
     if (!this.#send({ type: "request", request_id: requestId, request, reason })) {
-      return Promise.resolve({ kind: "unanswered", detail: "not sent: no connection to the server" });
+      return Promise.resolve({ kind: "unanswered", because: "not_sent" });
     }
     return new Promise((resolve) => {
       const deadline = setTimeout(() => {
         this.#waiting.delete(requestId);
-        resolve({ kind: "unanswered", detail: `no answer within ${ANSWER_DEADLINE_MILLIS / 1000} s` });
+        resolve({ kind: "unanswered", because: "too_late" });
       }, ANSWER_DEADLINE_MILLIS);
       this.#waiting.set(requestId, (answer) => {
         clearTimeout(deadline);
@@ -48,14 +51,14 @@ export class Requests {
   }
 
   /** An answer arrived. */
-  answered(requestId: number, outcome: Outcome, detail: string): void {
-    this.#waiting.get(requestId)?.({ kind: "answered", outcome, detail });
+  answered(requestId: number, outcome: Outcome, detail: string, why: Reason | null): void {
+    this.#waiting.get(requestId)?.({ kind: "answered", outcome, detail, why });
   }
 
   /** The connection went: whoever waits is told so now. */
   lost(): void {
     for (const tell of [...this.#waiting.values()]) {
-      tell({ kind: "unanswered", detail: "the connection was lost before the answer" });
+      tell({ kind: "unanswered", because: "lost" });
     }
   }
 }

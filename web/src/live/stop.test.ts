@@ -45,7 +45,7 @@ describe("the software stop's sender", () => {
     sender.press(null);
     expect(sender.state.kind).toBe("pending");
     vi.advanceTimersByTime(12);
-    expect(sender.socketAnswered(1, "accepted", "stopped", 1840)).toBe(true);
+    expect(sender.socketAnswered(1, "accepted", "stopped", null, 1840)).toBe(true);
     expect(sender.state).toMatchObject({ kind: "acknowledged", acknowledgedMillis: 12, toDriveMicros: 1840, lane: "websocket", sent: 1 });
     vi.advanceTimersByTime(10 * RETRY_EVERY_MILLIS);
     expect(sockets).toEqual([1]);
@@ -78,7 +78,7 @@ describe("the software stop's sender", () => {
     for (let round = 0; round < 50; round += 1) {
       made.posts.at(-1)?.fail(new Error("connection refused"));
       await vi.advanceTimersByTimeAsync(RETRY_EVERY_MILLIS);
-      expect(made.sender.state).toMatchObject({ kind: "pending", trouble: expect.any(String) as unknown });
+      expect(made.sender.state).toMatchObject({ kind: "pending", trouble: { kind: expect.any(String) as unknown } });
     }
     expect(made.posts).toHaveLength(51);
     made.posts.at(-1)?.answer({ acknowledged: true, to_drive_micros: null });
@@ -107,8 +107,8 @@ describe("the software stop's sender", () => {
   it("takes neither a refusal nor an unacknowledging answer nor another's answer for an acknowledgement", async () => {
     const { sender, posts } = world(true);
     sender.press(null);
-    expect(sender.socketAnswered(7, "accepted", "homing", null)).toBe(false);
-    expect(sender.socketAnswered(1, "refused", "busy", null)).toBe(true);
+    expect(sender.socketAnswered(7, "accepted", "homing", null, null)).toBe(false);
+    expect(sender.socketAnswered(1, "refused", "busy", null, null)).toBe(true);
     vi.advanceTimersByTime(RETRY_EVERY_MILLIS);
     posts[0]?.answer({ acknowledged: false, to_drive_micros: null });
     await vi.advanceTimersByTimeAsync(0);
@@ -119,7 +119,7 @@ describe("the software stop's sender", () => {
     const { sender, posts } = world(true);
     sender.press(null);
     vi.advanceTimersByTime(RETRY_EVERY_MILLIS);
-    sender.socketAnswered(1, "already_so", "stopped already", null);
+    sender.socketAnswered(1, "already_so", "stopped already", null, null);
     posts[0]?.answer({ acknowledged: true, to_drive_micros: 5 });
     await vi.advanceTimersByTimeAsync(0);
     expect(sender.state).toMatchObject({ kind: "acknowledged", lane: "websocket", acknowledgedMillis: RETRY_EVERY_MILLIS });
@@ -132,18 +132,18 @@ describe("the software stop's sender", () => {
     sender.press(null);
     expect(sockets).toEqual([1, 1]);
     expect(posts).toHaveLength(1);
-    sender.socketAnswered(1, "accepted", "stopped", 10);
+    sender.socketAnswered(1, "accepted", "stopped", null, 10);
     expect(sender.state).toMatchObject({ acknowledgedMillis: 100 });
   });
 
   it("begins anew with a press after an acknowledgement", () => {
     const { sender, sockets } = world(true);
     sender.press(null);
-    sender.socketAnswered(1, "accepted", "stopped", 10);
+    sender.socketAnswered(1, "accepted", "stopped", null, 10);
     sender.press(null);
     expect(sender.state.kind).toBe("pending");
     expect(sockets).toEqual([1, 2]);
-    expect(sender.socketAnswered(1, "accepted", "late echo", 10)).toBe(false);
+    expect(sender.socketAnswered(1, "accepted", "late echo", null, 10)).toBe(false);
     expect(sender.state.kind).toBe("pending");
   });
 });

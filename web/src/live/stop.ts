@@ -2,7 +2,8 @@
  * The software stop's sender. It decides when a press counts as acknowledged, and must never give up before: it says
  * "not acknowledged" until the server has said otherwise, over whichever lane answers first.
  */
-import type { Outcome } from "../api/types";
+import { Unanswered } from "../api/http";
+import type { Outcome, Reason } from "../api/types";
 
 /** Which way an acknowledgement came. */
 export type StopLane = "websocket" | "http";
@@ -15,8 +16,8 @@ export type StopState =
       readonly pressedAtMillis: number;
       /** Sendings so far, both lanes together. */
       readonly sent: number;
-      /** The last trouble in words; null before any. */
-      readonly trouble: string | null;
+      /** The last trouble; null before any. */
+      readonly trouble: StopTrouble | null;
     }
   | {
       readonly kind: "acknowledged";
@@ -29,6 +30,13 @@ export type StopState =
       readonly sent: number;
       readonly detail: string | null;
     };
+
+/** Why a sending was not acknowledged. */
+export type StopTrouble =
+  | { readonly kind: "refused"; readonly detail: string; readonly why: Reason | null }
+  | { readonly kind: "no_socket" }
+  | { readonly kind: "not_acknowledged" }
+  | { readonly kind: "failed"; readonly error: unknown };
 
 /** The server's word over HTTP. */
 export interface HttpStopAnswer {
@@ -87,9 +95,9 @@ export class StopSender {
   }
 
   /** An answer came over the socket; true if it was a stop's. */
-  socketAnswered(requestId: number, outcome: Outcome, detail: string, toDriveMicros: number | null): boolean {
+  socketAnswered(requestId: number, outcome: Outcome, detail: string, why: Reason | null, toDriveMicros: number | null): boolean {
     if (requestId !== this.#requestId) return false;
-    if (outcome === "refused") this.#troubled(`the server refused: ${detail}`);
+    if (outcome === "refused") this.#troubled({ kind: "refused", detail, why });
     else this.#acknowledged("websocket", toDriveMicros, detail);
     return true;
   }
@@ -113,7 +121,7 @@ export class StopSender {
     if (this.#requestId === null) return false;
     const sent = this.#ports.sendOnSocket(this.#requestId, this.#reason);
     if (sent) this.#counted();
-    else this.#troubled("no connection for the WebSocket");
+    else this.#troubled({ kind: "no_socket" });
     return sent;
   }
 
@@ -122,7 +130,7 @@ export class StopSender {
     if (this.#posts.size >= POSTS_AT_ONCE) return;
     const controller = new AbortController();
     const deadline = setTimeout(() => {
-      controller.abort(new Error(`no answer over HTTP within ${POST_DEADLINE_MILLIS} ms`));
+      controller.abort(new Unanswered(POST_DEADLINE_MILLIS / 1000));
     }, POST_DEADLINE_MILLIS);
     this.#posts.add(controller);
     this.#counted();
@@ -130,10 +138,10 @@ export class StopSender {
       .post(this.#reason, controller.signal)
       .then((answer) => {
         if (answer.acknowledged) this.#acknowledged("http", answer.to_drive_micros, null);
-        else this.#troubled("the server answered over HTTP without acknowledging");
+        else this.#troubled({ kind: "not_acknowledged" });
       })
       .catch((error: unknown) => {
-        this.#troubled(error instanceof Error ? error.message : String(error));
+        this.#troubled({ kind: "failed", error });
       })
       .finally(() => {
         clearTimeout(deadline);
@@ -167,7 +175,7 @@ export class StopSender {
     if (this.#state.kind === "pending") this.#become({ ...this.#state, sent: this.#state.sent + 1 });
   }
 
-  #troubled(trouble: string): void {
+  #troubled(trouble: StopTrouble): void {
     if (this.#state.kind === "pending") this.#become({ ...this.#state, trouble });
   }
 

@@ -1,8 +1,11 @@
 /** What everybody must see at once: no connection, old values, and why the machine is stopped. */
 import { createMemo, Show, type JSX } from "solid-js";
+import type { StopCause } from "../api/types";
 import { words } from "../i18n";
 import type { Live } from "../live/live";
 import { modeWords, span } from "../lib/format";
+import { said } from "../lib/reasonWords";
+import { Said } from "./Said";
 
 /** The bars under the header. A stop since the very start is one that the last run left latched. */
 export function Banners(props: { readonly live: Live }): JSX.Element {
@@ -45,12 +48,10 @@ export function Banners(props: { readonly live: Live }): JSX.Element {
             <b>
               {modeWords(props.live.snapshot()?.mode ?? "latched_stop")}, {stop().rule}:
             </b>
-            <span data-testid="stop-reason" lang="en">{stop().reason}</span>
+            <Said testId="stop-reason" of={said(stop().why, stop().reason)} />
             <span class="clears">
               {words().shell.banners.clearsWhen}{" "}
-              <span data-testid="stop-clears-when" lang="en">
-                {stop().clears_when}
-              </span>{" "}
+              <Said testId="stop-clears-when" of={clearsWhen(stop())} />{" "}
               <a href={`#/help/stop/${stop().since_micros === 0 ? "restart" : stop().rule}`} data-testid="stop-help">
                 {words().shell.banners.whatToDo}
               </a>
@@ -60,6 +61,12 @@ export function Banners(props: { readonly live: Live }): JSX.Element {
       </Show>
     </>
   );
+}
+
+function clearsWhen({ rule, clears_when }: StopCause): ReturnType<typeof said> {
+  const known: Readonly<Record<string, string>> = words().shell.banners.clears;
+  const text = known[rule];
+  return text === undefined ? { text: clears_when, lang: "en" } : { text };
 }
 
 function linkWords(live: Live): string {

@@ -3,6 +3,9 @@ import { createMemo, createResource, createSignal, For, Show, type JSX } from "s
 import { readConfig } from "../api/http";
 import type { ConfigKey } from "../api/types";
 import { words } from "../i18n";
+import { acceptsOf, meaningOf } from "./configWords";
+import { Said } from "./Said";
+import { troubleOf } from "../lib/trouble";
 
 /** The panel; read when it is opened, and again on request. */
 export function Configuration(): JSX.Element {
@@ -19,7 +22,7 @@ export function Configuration(): JSX.Element {
       <p>{say().intro}</p>
       <Show when={config.error !== undefined}>
         <p class="answer refused" role="alert" data-testid="config-trouble">
-          {say().notRead} <span lang="en">{messageOf(config.error)}</span>
+          {say().notRead} {troubleOf(config.error)}
         </p>
         <button type="button" onClick={() => void refetch()}>
           {say().again}
@@ -92,11 +95,9 @@ function Row(props: { readonly key: ConfigKey }): JSX.Element {
     <tr classList={{ differs: differs(props.key) }} data-testid={`config-${props.key.name}`}>
       <th scope="row">
         <code>{props.key.name}</code>
-        <span class="meaning" lang="en">
-          {props.key.meaning}
-        </span>
+        <Said class="meaning" of={meaningOf(props.key)} />
         <small>
-          {say().accepts} <span lang="en">{props.key.accepts}</span> · {say().variable} <code>{variableOf(props.key.name)}</code>
+          {say().accepts} {acceptsOf(props.key.takes)} · {say().variable} <code>{variableOf(props.key.name)}</code>
         </small>
       </th>
       <td>
@@ -113,7 +114,7 @@ function Row(props: { readonly key: ConfigKey }): JSX.Element {
 
 /** Every word of the search in the name, the meaning or the value. */
 function fits(key: ConfigKey, wanted: string): boolean {
-  const text = `${key.name} ${key.meaning} ${textOf(key.value)}`.toLowerCase();
+  const text = `${key.name} ${meaningOf(key).text} ${textOf(key.value)}`.toLowerCase();
   return wanted.toLowerCase().split(/\s+/).every((word) => text.includes(word));
 }
 
@@ -128,8 +129,4 @@ function variableOf(name: string): string {
 
 function textOf(value: unknown): string {
   return typeof value === "string" ? (value === "" ? '""' : value) : JSON.stringify(value).replaceAll(",", ", ");
-}
-
-function messageOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

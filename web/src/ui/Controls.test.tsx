@@ -63,7 +63,7 @@ describe("the machine's buttons", () => {
   });
 
   it("ask for a reason before a reset, and send it", async () => {
-    const ask = vi.fn<Live["ask"]>(() => Promise.resolve({ kind: "answered", outcome: "accepted", detail: "disarmed" }));
+    const ask = vi.fn<Live["ask"]>(() => Promise.resolve({ kind: "answered", outcome: "accepted", detail: "now disarmed", why: { id: "now_in", mode: "disarmed" } }));
     render(() => <Controls live={live(snapshotIn("disarmed", "pressed"), LIVE, ask)} />);
     fireEvent.click(screen.getByTestId("reset"));
     expect(screen.getByTestId("reset-confirm").hasAttribute("disabled")).toBe(true);
@@ -71,7 +71,7 @@ describe("the machine's buttons", () => {
     fireEvent.click(screen.getByTestId("reset-confirm"));
     expect(ask).toHaveBeenCalledExactlyOnceWith("reset", "cable checked");
     await vi.waitFor(() => {
-      expect(screen.getByTestId("answer").textContent).toBe("reset: accepted, disarmed");
+      expect(screen.getByTestId("answer").textContent).toBe("reset: accepted, now disarmed");
     });
     expect(screen.queryByTestId("reset-reason")).toBeNull();
   });
@@ -80,7 +80,7 @@ describe("the machine's buttons", () => {
     render(() => (
       <Controls
         live={live(snapshotIn("disarmed", null), LIVE, () =>
-          Promise.resolve({ kind: "unanswered", detail: "no answer within 3 s" }),
+          Promise.resolve({ kind: "unanswered", because: "too_late" }),
         )}
       />
     ));

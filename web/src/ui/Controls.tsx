@@ -2,8 +2,10 @@
 import { createSignal, For, Show, type JSX } from "solid-js";
 import type { MachineRequest } from "../api/types";
 import { words } from "../i18n";
+import { said, type Said as Sentence } from "../lib/reasonWords";
 import type { Live } from "../live/live";
 import type { Answer } from "../live/requests";
+import { Said } from "./Said";
 
 /** The machine's buttons. */
 export function Controls(props: { readonly live: Live }): JSX.Element {
@@ -95,7 +97,7 @@ export function Controls(props: { readonly live: Live }): JSX.Element {
             classList={{ refused: last().answer.kind === "unanswered" || outcomeOf(last().answer) === "refused" }}
           >
             {words().shell.machine.request[last().request]}: {outcomeWords(last().answer)}
-            <Show when={last().answer.detail}>{(detail) => <span lang="en">, {detail()}</span>}</Show>
+            <Show when={detailOf(last().answer)}>{(detail) => <>, <Said of={detail()} /></>}</Show>
           </p>
         )}
       </Show>
@@ -108,15 +110,15 @@ export function whyNot(live: Live, request: string): string | null {
   return refusalOf(live, request)?.text ?? null;
 }
 
-/** The same, with the language of the server's words; the page's own need none. */
-function refusalOf(live: Live, request: string): { readonly text: string; readonly lang?: "en" } | null {
+/** The same, with its language where it is not the page's. */
+function refusalOf(live: Live, request: string): Sentence | null {
   const freshness = live.freshness();
   const say = words().shell.machine;
   if (freshness.kind === "none") return { text: say.stateNone };
   if (freshness.kind === "stale") return { text: say.stateStale };
   const state = live.snapshot()?.requests.find((entry) => entry.request === request);
   if (state === undefined) return { text: say.notOffered };
-  return state.refused_because === null ? null : { text: state.refused_because, lang: "en" };
+  return state.refused_because === null ? null : said(state.why, state.refused_because);
 }
 
 function outcomeOf(answer: Answer): string | null {
@@ -125,7 +127,13 @@ function outcomeOf(answer: Answer): string | null {
 
 /** An answer in words. */
 export function wordsOf(answer: Answer): string {
-  return answer.detail === "" ? outcomeWords(answer) : `${outcomeWords(answer)}, ${answer.detail}`;
+  const detail = detailOf(answer);
+  return detail === null ? outcomeWords(answer) : `${outcomeWords(answer)}, ${detail.text}`;
+}
+
+function detailOf(answer: Answer): Sentence | null {
+  if (answer.kind === "unanswered") return { text: words().shell.machine.silence[answer.because] };
+  return answer.detail === "" ? null : said(answer.why, answer.detail);
 }
 
 function outcomeWords(answer: Answer): string {

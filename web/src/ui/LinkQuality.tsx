@@ -3,10 +3,12 @@ import { createMemo, For, Show, type JSX } from "solid-js";
 import type { Client, ControlLoop, LinkThresholds, Threshold } from "../api/types";
 import { words } from "../i18n";
 import { decimal, millis } from "../lib/format";
+import { clauses } from "../lib/reasonWords";
 import { gradeOf, growth, keyed, NO_LINKS, takeLinks, trace, worst, type ClientMeasure, type Grade, type LinksSeen } from "../live/links";
 import type { Live } from "../live/live";
 import { createRing, nowMicros } from "../live/ring";
 import { STALE_AFTER_MILLIS } from "../live/state";
+import { Said } from "./Said";
 import { Sparkline } from "./Sparkline";
 
 /** One line of a table. */
@@ -129,7 +131,7 @@ export function LinkQuality(props: { readonly live: Live }): JSX.Element {
             <>
               <Link title={text().loop} more={`${decimal(loop().rate_hz, 0)} Hz`} measures={ofLoop(loop())} testId="link-loop" />
               <p class="scheduling">
-                {text().scheduling} <span lang="en">{loop().scheduling}</span>
+                {text().scheduling} <Said of={clauses(loop().scheduling_why, loop().scheduling)} />
               </p>
             </>
           )}

@@ -138,11 +138,11 @@ export function PlanCanvas(props: PlanCanvasProps): JSX.Element {
       setSize({ widthPx: surface.clientWidth, heightPx: surface.clientHeight, ratio: window.devicePixelRatio });
     };
     recolour();
-    resize();
     const dark = matchMedia("(prefers-color-scheme: dark)");
     dark.addEventListener("change", recolour);
     const themed = new MutationObserver(recolour);
     themed.observe(document.documentElement, { attributes: true, attributeFilter: ["data-theme", "class", "style"] });
+    // It tells the first size too, when the page has been laid out: to ask for it now would lay it out for that alone.
     const observer = new ResizeObserver(resize);
     observer.observe(surface);
     // The page zoomed, or moved to another screen.

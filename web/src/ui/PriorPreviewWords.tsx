@@ -28,7 +28,7 @@ export function PriorPreviewWords(props: {
           <Match when={props.state.kind === "failed" ? props.state : null}>
             {(failed) => (
               <p class="bad" data-testid="prior-preview-failed">
-                {text().previewFailed} <span lang="en">{failed().why}</span>
+                {text().previewFailed} {failed().why}
               </p>
             )}
           </Match>

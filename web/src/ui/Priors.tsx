@@ -14,6 +14,7 @@ import { Previewer, type PreviewState } from "../live/preview";
 import { PriorChanges } from "./PriorChanges";
 import { PriorPreviewWords } from "./PriorPreviewWords";
 import { PriorRow } from "./PriorRow";
+import { troubleOf } from "../lib/trouble";
 
 /** Where the column would go, for the picture. */
 export interface PriorGhost {
@@ -113,7 +114,7 @@ export function Priors(props: {
     try {
       setChanges(await listPriorChanges());
     } catch (error) {
-      say({ words: text().changesUnread, server: messageOf(error), bad: true });
+      say({ words: text().changesUnread, server: troubleOf(error), bad: true });
     }
   };
   // Anybody's change arrives as an event: the list is read again.
@@ -144,7 +145,7 @@ export function Priors(props: {
       void readChanges();
       return true;
     } catch (error) {
-      say({ words: text().notApplied, server: messageOf(error), bad: true });
+      say({ words: text().notApplied, server: troubleOf(error), bad: true });
       return false;
     } finally {
       setBusy(false);
@@ -256,7 +257,7 @@ export function Priors(props: {
         )}
       </Show>
       <p class="answer" classList={{ refused: said()?.bad === true || frozen() !== null }} role="status" data-testid="prior-status">
-        {frozen() ?? said()?.words ?? (pending() > 0 ? text().pending(pending()) : text().hint)} <span lang="en">{frozen() === null ? said()?.server : ""}</span>
+        {frozen() ?? said()?.words ?? (pending() > 0 ? text().pending(pending()) : text().hint)} <span>{frozen() === null ? said()?.server : ""}</span>
       </p>
       <div class="prior-acts">
         <button type="button" class="primary" data-testid="prior-apply" disabled={pending() === 0 || busy() || frozen() !== null} onClick={() => void apply()}>
@@ -297,10 +298,6 @@ function previewed(state: PreviewState): PriorPreview | null {
 
 function priorText(prior: number | undefined): string {
   return prior === undefined ? "–" : decimal(prior, 2);
-}
-
-function messageOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }
 
 /** The server publishes about 30 times a second: by then its word counts, whatever it is, ms. */

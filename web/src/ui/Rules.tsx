@@ -2,7 +2,9 @@
 import { createMemo, For, type JSX } from "solid-js";
 import type { RuleStatus } from "../api/types";
 import { words } from "../i18n";
+import { said } from "../lib/reasonWords";
 import type { Live } from "../live/live";
+import { Said } from "./Said";
 
 /** The list, in the rules' own order, so that each stays in its place. */
 export function Rules(props: { readonly live: Live }): JSX.Element {
@@ -34,9 +36,7 @@ export function Rules(props: { readonly live: Live }): JSX.Element {
               </a>
               <span class="rule-title">{ruleTitle(rule.rule, rule.title)}</span>
               <span class="rule-status">{words().shell.rules.status[rule.status]}</span>
-              <span class="rule-reason" lang="en">
-                {rule.reason}
-              </span>
+              <Said class="rule-reason" of={said(rule.why, rule.reason)} />
             </li>
           )}
         </For>

@@ -1,6 +1,7 @@
 // @vitest-environment happy-dom
 import { cleanup, fireEvent, render, screen } from "@solidjs/testing-library";
 import { afterEach, describe, expect, it, vi } from "vitest";
+import { Unreachable } from "../api/http";
 import { StopButton } from "./StopButton";
 import { StopReport } from "./StopReport";
 
@@ -76,12 +77,12 @@ describe("the stop report", () => {
 
   it("says that it is not acknowledged, for how long and why", () => {
     render(() => (
-      <StopReport stop={{ kind: "pending", pressedAtMillis: 1000, sent: 4, trouble: "Failed to fetch" }} nowMillis={2300} />
+      <StopReport stop={{ kind: "pending", pressedAtMillis: 1000, sent: 4, trouble: { kind: "failed", error: new Unreachable(null) } }} nowMillis={2300} />
     ));
     const text = screen.getByTestId("stop-pending").textContent;
     expect(text).toContain("NOT ACKNOWLEDGED, retrying");
     expect(text).toContain("1.3 s since the press");
-    expect(text).toContain("Failed to fetch");
+    expect(text).toContain("no connection to the server");
   });
 
   it("says both times and the lane", () => {

@@ -1,8 +1,11 @@
 /** What became of the last press of the stop; never says stopped before the server did. */
 import { createSignal, Match, Show, Switch, type JSX } from "solid-js";
 import { words } from "../i18n";
-import type { StopState } from "../live/stop";
+import type { StopState, StopTrouble } from "../live/stop";
 import { millis, span } from "../lib/format";
+import { said, type Said as Sentence } from "../lib/reasonWords";
+import { troubleOf } from "../lib/trouble";
+import { Said } from "./Said";
 
 /** One line across the page, until it is put away or another press follows. */
 export function StopReport(props: { readonly stop: StopState; readonly nowMillis: number }): JSX.Element {
@@ -21,7 +24,7 @@ export function StopReport(props: { readonly stop: StopState; readonly nowMillis
               <b>{words().shell.stop.notAcknowledged}</b>
               <span aria-hidden="true">
                 {words().shell.stop.sincePress(span(Math.max(0, props.nowMillis - state().pressedAtMillis) / 1000), state().sent)}
-                <Show when={state().trouble}>{(trouble) => <span lang="en">; {trouble()}</span>}</Show>
+                <Show when={state().trouble}>{(trouble) => <>; <Said of={troubleWords(trouble())} /></>}</Show>
               </span>
               <b class="bar-end">{words().shell.stop.wired}</b>
             </div>
@@ -46,6 +49,20 @@ export function StopReport(props: { readonly stop: StopState; readonly nowMillis
       </Switch>
     </div>
   );
+}
+
+function troubleWords(trouble: StopTrouble): Sentence {
+  const say = words().shell.stop.trouble;
+  switch (trouble.kind) {
+    case "refused":
+      return said(trouble.why, trouble.detail);
+    case "no_socket":
+      return { text: say.noSocket };
+    case "not_acknowledged":
+      return { text: say.notAcknowledged };
+    case "failed":
+      return { text: troubleOf(trouble.error) };
+  }
 }
 
 function reached(toDriveMicros: number | null): string {

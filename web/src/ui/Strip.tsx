@@ -1,6 +1,7 @@
 /** The health of everything behind the page: connection, control loop, VR clients. */
 import { For, Show, type JSX } from "solid-js";
 import { words } from "../i18n";
+import { clauses } from "../lib/reasonWords";
 import type { Live } from "../live/live";
 import { millis } from "../lib/format";
 
@@ -34,15 +35,14 @@ export function Strip(props: { readonly live: Live }): JSX.Element {
       </span>
       <Show when={loop()}>
         {(state) => (
-          <span class="fades loop" title={state().scheduling} classList={{ bad: state().missed_deadlines > 0 && state().lateness_max_micros > 1e6 / state().rate_hz }}>
+          <span class="fades loop" title={clauses(state().scheduling_why, state().scheduling).text} classList={{ bad: state().missed_deadlines > 0 && state().lateness_max_micros > 1e6 / state().rate_hz }}>
             {words().shell.strip.loop(
               state().rate_hz.toFixed(0),
               millis(state().lateness_p99_micros / 1000),
               millis(state().lateness_max_micros / 1000),
               state().missed_deadlines,
               state().steps,
-            )}{" "}
-            <span lang="en">{state().scheduling}</span>
+            )}
           </span>
         )}
       </Show>

@@ -7,6 +7,7 @@ import { labelOf } from "../lib/labels";
 import { GROUP_NAMES, groupOf, keyOf, personOf, type Filter, type Group } from "../lib/timeline";
 import type { Live } from "../live/live";
 import { createRecord } from "../live/record";
+import { EventSaid } from "./EventSaid";
 import { eventWords, particularsOf } from "./eventWords";
 import { TimeBar } from "./TimeBar";
 
@@ -124,7 +125,7 @@ export function Timeline(props: { readonly live: Live }): JSX.Element {
       <Show when={record.trouble()}>
         {(why) => (
           <p class="bad" role="alert" data-testid="timeline-trouble">
-            {text().failed} <span lang="en">{why()}</span>
+            {text().failed} {why()}
           </p>
         )}
       </Show>
@@ -137,7 +138,7 @@ export function Timeline(props: { readonly live: Live }): JSX.Element {
                 <button type="button" class="event" aria-pressed={mapped(selected()) === keyOf(event)} onClick={() => setSelected((before) => (before !== null && keyOf(before) === keyOf(event) ? null : event))}>
                   <time datetime={event.at} title={dayAndTime(event.at)}>{timeOfDay(event.at)}</time>
                   <span class="event-group">{text().groups[groupOf(event.kind)]}</span>
-                  <Said event={event} label={label} />
+                  <EventSaid event={event} label={label} />
                 </button>
               </li>
             )}
@@ -155,24 +156,12 @@ export function Timeline(props: { readonly live: Live }): JSX.Element {
   );
 }
 
-function Said(props: { readonly event: WireEvent; readonly label: (id: string) => string }): JSX.Element {
-  const said = (): ReturnType<typeof eventWords> => eventWords(props.event, props.label);
-  return (
-    <span class="event-summary">
-      {said().text}
-      <Show when={said().server}>
-        {(server) => <span class="event-server" lang="en">{said().text === null ? "" : ": "}{server()}</span>}
-      </Show>
-    </span>
-  );
-}
-
 function Details(props: { readonly event: WireEvent; readonly label: (id: string) => string; readonly close: () => void }): JSX.Element {
   const text = (): ReturnType<typeof words>["desk"]["timeline"] => words().desk.timeline;
   return (
     <div class="event-details" role="region" aria-label={text().details} data-testid="event-details">
       <div class="event-details-head">
-        <b><Said event={props.event} label={props.label} /></b>
+        <b><EventSaid event={props.event} label={props.label} /></b>
         <button type="button" class="chip" data-testid="event-details-close" onClick={() => { props.close(); }}>{text().close}</button>
       </div>
       <dl>

@@ -2,6 +2,7 @@
 import { createEffect, createMemo, createSignal, For, onCleanup, onMount, Show, untrack, type Accessor, type JSX } from "solid-js";
 import { language, words } from "../i18n";
 import { labelOf } from "../lib/labels";
+import { clauses } from "../lib/reasonWords";
 import { decimal, metres, pair, span } from "../lib/format";
 import type { Layout } from "../lib/layout";
 import { TrailKeeper, type Trails } from "../lib/trails";
@@ -155,6 +156,10 @@ export function ActivityLine(props: { readonly live: Live }): JSX.Element {
     if (person === undefined) return words().live.servingNobody;
     return object === null ? person : words().live.serving(person, labelOf(props.live.scene()?.scene ?? null, object));
   };
+  const reason = (): ReturnType<typeof clauses> => {
+    const now = column();
+    return now === undefined ? { text: "" } : clauses(now.why, now.reason, (id) => labelOf(props.live.scene()?.scene ?? null, id));
+  };
   const limiting = (): string => persons().filter((person) => person.limits_column).map((person) => person.name).join(", ");
   return (
     <div class="activity-line fades" data-activity={column()?.activity}>
@@ -167,8 +172,8 @@ export function ActivityLine(props: { readonly live: Live }): JSX.Element {
           <span class="limited" data-testid="column-limited">{words().live.limitedBy(limiting())}</span>
         </Show>
       </p>
-      <p class="activity-reason" lang="en" data-testid="column-reason" title={column()?.reason}>
-        {column()?.reason ?? ""}
+      <p class="activity-reason" lang={reason().lang} data-testid="column-reason" title={reason().text}>
+        {reason().text}
       </p>
     </div>
   );

@@ -28,7 +28,7 @@ export function Weights(props: { readonly live: Live }): JSX.Element {
   return (
     <section class="panel grows weights" aria-labelledby="weights-title">
       <h2 id="weights-title">
-        {text().title} <small lang="en">{props.live.snapshot()?.intention_rule ?? ""}</small>
+        {text().title} <small>{props.live.snapshot()?.intention_rule ?? ""}</small>
         <small class="count" role="status" data-testid="weights-shown">
           {text().shown(shown().length, objects().length)}
         </small>

@@ -24,14 +24,26 @@ it("says what happened in the page's language, with the objects' labels", () => 
 
 it("keeps what the server adds beside it", () => {
   const changed = event("mode_changed", { from: "following", to: "latched_stop", because: "software stop: drill" });
-  expect(eventWords(changed, label)).toEqual({ text: "Following → Latched stop", server: "software stop: drill" });
+  expect(eventWords(changed, label)).toEqual({ text: "Following → Latched stop", server: { text: "software stop: drill", lang: "en" } });
   const stop = event("stop_pressed", { author: "Bo", by: "http", reason: null, to_drive_micros: 1840 });
   expect(eventWords(stop, label)).toEqual({ text: "Bo pressed stop; at the drive after 1.8 ms", server: null });
 });
 
+it("says why in the page's language, where the server says which reason it is", () => {
+  const why = { id: "pose_too_old", person: "Ada", age_secs: 0.6 };
+  const breached = event("rule_breached", { rule: "R2", title: "tracking", reason: "the newest pose of Ada is 0.60 s old", why });
+  expect(eventWords(breached, label).server).toEqual({ text: "the newest pose of Ada is 0.60 s old" });
+  useLanguage("fr");
+  expect(eventWords(breached, label)).toEqual({ text: "R2 enfreinte", server: { text: "Ada : la dernière pose date de 0,60 s" } });
+  const changed = event("mode_changed", { from: "following", to: "protective_stop", rule: "R2", because: "R2: the newest pose …", why });
+  expect(eventWords(changed, label).server).toEqual({ text: "R2 : Ada : la dernière pose date de 0,60 s" });
+  const unknown = event("rule_breached", { rule: "R2", reason: "a new one", why: { id: "made_up" } });
+  expect(eventWords(unknown, label).server).toEqual({ text: "a new one", lang: "en" });
+});
+
 it("falls back to the server's sentence for what it does not know", () => {
   for (const odd of [event("made_up", { a: 1 }), event("served", { object: null, name: "Ada" }), event("mode_changed", { from: "asleep", to: "ready" }), event("prior_changed", null)]) {
-    expect(eventWords(odd, label)).toEqual({ text: null, server: "in the server's words" });
+    expect(eventWords(odd, label)).toEqual({ text: null, server: { text: "in the server's words", lang: "en" } });
   }
 });
 

@@ -1,14 +1,16 @@
 /** What an event says, in the page's language where its kind and particulars tell; the server's own words beside it. */
 import type { Mode, WireEvent } from "../api/types";
+import { isReason } from "../api/reason";
 import { words } from "../i18n";
 import { decimal, millis, modeWords } from "../lib/format";
+import { requestWords, said, type Said } from "../lib/reasonWords";
 
 /** An event in words. */
 export interface EventWords {
   /** In the page's language; null when only the server's sentence tells. */
   readonly text: string | null;
-  /** What the server adds, English. */
-  readonly server: string | null;
+  /** Why, or what somebody said; in the server's English where the page does not know the reason. */
+  readonly server: Said | null;
 }
 
 /** One particular of an event. */
@@ -21,40 +23,46 @@ export interface Particular {
 
 /** What happened. */
 export function eventWords(event: WireEvent, label: (object: string) => string): EventWords {
-  const said = textOf(event, label);
-  return said ?? { text: null, server: event.summary };
+  const told = textOf(event, label);
+  return told ?? { text: null, server: { text: event.summary, lang: "en" } };
 }
 
 function textOf(event: WireEvent, label: (object: string) => string): EventWords | null {
   const text = words().desk.events;
   const detail = fieldsOf(event.detail);
   const field = (name: string): string | null => (typeof detail[name] === "string" ? detail[name] : null);
+  /** The reason that comes with a sentence of the server, else that sentence. */
+  const why = (name: string): Said | null => {
+    const english = field(name);
+    return english === null ? null : said(isReason(detail["why"]) ? detail["why"] : null, english, label);
+  };
   const number = (name: string): number | null => (typeof detail[name] === "number" ? detail[name] : null);
-  const of = (say: (...given: [string, string]) => string, names: readonly string[], server: string | null = null): EventWords | null => {
+  const of = (say: (...given: [string, string]) => string, names: readonly string[], server: Said | null = null): EventWords | null => {
     const given = names.map((name) => (name === "object" ? mapped(field(name), label) : field(name)));
     return given.every((value) => value !== null) ? { text: say(given[0] ?? "", given[1] ?? ""), server } : null;
   };
   switch (event.kind) {
     case "mode_changed": {
       const [from, to] = [field("from"), field("to")];
-      return isMode(from) && isMode(to) ? { text: text.mode_changed(modeWords(from), modeWords(to)), server: field("because") } : null;
+      return isMode(from) && isMode(to) ? { text: text.mode_changed(modeWords(from), modeWords(to)), server: becauseOf(field("rule"), why("because")) } : null;
     }
     case "rule_breached":
-      return of(text.rule_breached, ["rule"], field("reason"));
+      return of(text.rule_breached, ["rule"], why("reason"));
     case "rule_cleared":
       return of(text.rule_cleared, ["rule"]);
     case "request_accepted":
     case "request_refused": {
       const [request, author] = [field("request"), field("author")];
       if (request === null || author === null) return null;
-      const name = isRequest(request) ? text.requests[request] : request;
-      return { text: text[event.kind](name, author), server: field("detail") };
+      const name = requestWords(request);
+      const person = field("name");
+      return { text: text[event.kind](person === null ? name : `${name} (${person})`, author), server: why("detail") };
     }
     case "stop_pressed": {
       const author = field("author");
       if (author === null) return null;
       const micros = number("to_drive_micros");
-      return { text: `${text.stop_pressed(author)}; ${micros === null ? text.notAtDrive : text.atDrive(millis(micros / 1000))}`, server: field("reason") };
+      return { text: `${text.stop_pressed(author)}; ${micros === null ? text.notAtDrive : text.atDrive(millis(micros / 1000))}`, server: spoken(field("reason")) };
     }
     case "prior_changed": {
       const [from, to] = [number("from"), number("to")];
@@ -78,7 +86,7 @@ function textOf(event: WireEvent, label: (object: string) => string): EventWords
     case "client_gone":
       return of(text[event.kind], ["client"]);
     case "client_error":
-      return of(text.client_error, ["client"], field("message"));
+      return of(text.client_error, ["client"], clientErrorOf(field("code"), field("message")));
     default:
       return null;
   }
@@ -117,8 +125,22 @@ function isMode(value: string | null): value is Mode {
   return value !== null && MODES.has(value);
 }
 
-function isRequest(value: string): value is keyof ReturnType<typeof words>["desk"]["events"]["requests"] {
-  return Object.hasOwn(words().desk.events.requests, value);
+/** A mode that a rule led to. */
+function becauseOf(rule: string | null, why: Said | null): Said | null {
+  // The server's own sentence begins with its rule.
+  return rule === null || why === null || why.lang !== undefined ? why : { text: words().desk.events.byRule(rule, why.text) };
+}
+
+/** What a person said, in whatever language. */
+function spoken(text: string | null): Said | null {
+  return text === null ? null : { text };
+}
+
+function clientErrorOf(code: string | null, message: string | null): Said | null {
+  const codes: Readonly<Record<string, string>> = words().desk.clientErrors;
+  const known = code === null ? undefined : codes[code];
+  if (known !== undefined) return { text: known };
+  return message === null ? null : { text: message, lang: "en" };
 }
 
 function isNamed(name: string): name is keyof ReturnType<typeof words>["desk"]["details"] {
@@ -126,5 +148,5 @@ function isNamed(name: string): name is keyof ReturnType<typeof words>["desk"]["
 }
 
 const MODES: ReadonlySet<string> = new Set<Mode>(["disarmed", "homing", "ready", "following", "protective_stop", "latched_stop", "faulted"]);
-/** Fields that hold a sentence of the server. */
+/** Fields that hold a sentence of the server; what they say is said above them in the page's language. */
 const SENTENCES: ReadonlySet<string> = new Set(["because", "detail", "message", "title"]);

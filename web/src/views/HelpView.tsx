@@ -2,7 +2,9 @@
 import { createEffect, createResource, For, on, Show, type JSX } from "solid-js";
 import { RULES, STOPS, UNWATCHED, type HelpText, type RuleName } from "../help/shape";
 import { language, words, type Language } from "../i18n";
+import { said } from "../lib/reasonWords";
 import type { Live } from "../live/live";
+import { Said } from "../ui/Said";
 
 /** The view. */
 export function HelpView(props: {
@@ -102,7 +104,7 @@ function Rule(props: { readonly rule: RuleName; readonly help: HelpText; readonl
       <Show when={!UNWATCHED.has(props.rule) && now()}>
         {(rule) => (
           <p class="empty fades">
-            {say().now} {words().shell.rules.status[rule().status]}, <span lang="en">{rule().reason}</span>
+            {say().now} {words().shell.rules.status[rule().status]}, <Said of={said(rule().why, rule().reason)} />
           </p>
         )}
       </Show>

@@ -8,6 +8,7 @@ import { createLayout, type Limits } from "../lib/layout";
 import type { PreferenceStore } from "../lib/preferences";
 import type { Live } from "../live/live";
 import { Controls } from "../ui/Controls";
+import { Decisions } from "../ui/Decisions";
 import { Foldable } from "../ui/Foldable";
 import { LinkQuality } from "../ui/LinkQuality";
 import { Persons } from "../ui/Persons";
@@ -90,6 +91,7 @@ export function LiveView(props: {
       <Splitter sizes="right" label={words().live.resizeRight} value={right()} limits={RIGHT} change={(px) => { layout.keep("right", px); }} testId="split-right" />
       <div class="desk-side desk-right" hidden={narrow() && LEFT_TABS.has(tab())}>
         <Group tab="objects">
+          <Panel name="decisions"><Decisions live={props.live} /></Panel>
           <Panel name="weights" grows><Weights live={props.live} /></Panel>
           <Panel name="priors" grows><Priors live={props.live} author={props.author} onGhost={setGhost} /></Panel>
         </Group>

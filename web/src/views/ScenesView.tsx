@@ -9,6 +9,7 @@ import type { Live } from "../live/live";
 import { DraftPanel } from "../ui/scenes/DraftPanel";
 import { SceneDetail } from "../ui/scenes/SceneDetail";
 import type { Upload } from "./upload";
+import { troubleOf } from "../lib/trouble";
 
 /** The list on the left; on the right a draft, or the scene that the address names. */
 export function ScenesView(props: { readonly live: Live; readonly upload: Upload; readonly author: string }): JSX.Element {
@@ -23,7 +24,7 @@ export function ScenesView(props: { readonly live: Live; readonly upload: Upload
       setScenes(await listScenes());
       setTrouble(null);
     } catch (error) {
-      setTrouble(error instanceof Error ? error.message : String(error));
+      setTrouble(troubleOf(error));
     }
   };
   createEffect(on([() => props.upload.stored(), () => props.live.link().phase, () => props.live.scene()], () => void read()));

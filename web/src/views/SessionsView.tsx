@@ -7,6 +7,7 @@ import { createAddress, secondsOf, wholeNumber } from "../lib/address";
 import type { Live } from "../live/live";
 import { lengthOf, Replay } from "../ui/sessions/Replay";
 import { SessionList } from "../ui/sessions/SessionList";
+import { troubleOf } from "../lib/trouble";
 
 /** `#/sessions` and `#/sessions/12?t=34.5`. */
 export function SessionsView(props: { readonly live: Live }): JSX.Element {
@@ -28,7 +29,7 @@ export function SessionsView(props: { readonly live: Live }): JSX.Element {
       if (part() === wanted) setSession(found);
     } catch (error) {
       if (part() !== wanted) return;
-      setTrouble({ missing: error instanceof Problem && error.status === 404, detail: error instanceof Error ? error.message : String(error) });
+      setTrouble({ missing: error instanceof Problem && error.status === 404, detail: troubleOf(error) });
     }
   };
   createEffect(on(part, () => void open()));

@@ -6,6 +6,7 @@ import { createEffect, createSignal, onCleanup, type Accessor } from "solid-js";
 import { checkScene, Problem, replaceScene, uploadScene } from "../api/http";
 import type { SceneError } from "../api/types";
 import { moveErrors } from "../lib/sceneText";
+import { troubleOf } from "../lib/trouble";
 
 /** What the server says of a text. */
 export type Check =
@@ -101,7 +102,7 @@ export function createUpload(author: Accessor<string>): Upload {
       try {
         open(file.name, await file.text(), null);
       } catch (error) {
-        setUnreadable({ file: file.name, detail: messageOf(error) });
+        setUnreadable({ file: file.name, detail: troubleOf(error) });
       }
     },
     edit: (text) => {
@@ -122,7 +123,7 @@ export function createUpload(author: Accessor<string>): Upload {
         // What was typed since is a draft still.
         setDraft((now) => (now === null || now.text === sent.text ? null : { ...now, storing: false, of: id }));
       } catch (error) {
-        setDraft((now) => (now === null ? null : { ...now, storing: false, trouble: messageOf(error), ...(error instanceof Problem && error.errors.length > 0 && now.text === sent.text ? { check: { kind: "refused", detail: error.message, errors: error.errors } } : {}) }));
+        setDraft((now) => (now === null ? null : { ...now, storing: false, trouble: troubleOf(error), ...(error instanceof Problem && error.errors.length > 0 && now.text === sent.text ? { check: { kind: "refused", detail: error.message, errors: error.errors } } : {}) }));
       }
     },
     discard: () => {
@@ -147,12 +148,8 @@ async function checked(text: string, author: string): Promise<Check> {
     if (error instanceof Problem && (error.status === 400 || error.status === 422)) {
       return { kind: "refused", detail: error.message, errors: error.errors };
     }
-    return { kind: "failed", detail: messageOf(error), errors: [] };
+    return { kind: "failed", detail: troubleOf(error), errors: [] };
   }
-}
-
-function messageOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }
 
 /** A pause in typing, ms. */

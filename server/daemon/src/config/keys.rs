@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use covr_engine::intention::RuleName;
 use covr_engine::motion::MotionName;
 use covr_engine::motion::standing::StandingName;
+use covr_wire::accepts::Accepts;
 use toml::Value;
 
 pub use links::out_of_order;
@@ -23,8 +24,8 @@ pub struct Key {
     pub name: &'static str,
     /// What it means, with units.
     pub meaning: &'static str,
-    /// What it accepts, for people.
-    pub accepts: String,
+    /// What it accepts.
+    pub accepts: Accepts,
     place: Place,
 }
 
@@ -252,35 +253,24 @@ pub fn all() -> Vec<Key> {
 impl Key {
     fn new(name: &'static str, meaning: &'static str, place: Place) -> Self {
         let accepts = match &place {
-            Place::Number(range, _) => format!("a number from {} to {}", range.start(), range.end()),
-            Place::Whole(range, _) => format!("a whole number from {} to {}", range.start(), range.end()),
-            Place::Priority(_) => "a whole number from 1 to 99".into(),
-            Place::Switch(_) => "true or false".into(),
-            Place::Text(_) => "a text that is not empty".into(),
-            Place::Path(_) => "a path that is not empty".into(),
-            Place::PathOrNone(_) => "a path, or \"\" for none".into(),
-            Place::Address(_) => "an address and a port such as \"127.0.0.1:7878\"".into(),
-            Place::Origins(_) => {
-                "a list of texts such as \"https://lab.example:8443\", \"file://\" or \"null\"".into()
-            }
-            Place::Rectangle(_) => {
-                "four numbers [min_x, min_y, max_x, max_y], each side at least 0.5 m".into()
-            }
-            Place::Point(_) => "three numbers [x, y, z] of at most 100 m".into(),
-            Place::Rule(_) => {
-                let names = RuleName::ALL.map(|rule| format!("\"{}\"", rule.name()));
-                format!("one of {}", names.join(", "))
-            }
-            Place::Motion(_) => {
-                let names = MotionName::ALL.map(|motion| format!("\"{}\"", motion.name()));
-                format!("one of {}", names.join(", "))
-            }
+            Place::Number(range, _) => Accepts::Number { least: *range.start(), most: *range.end() },
+            Place::Whole(range, _) => Accepts::Whole { least: *range.start(), most: *range.end() },
+            Place::Priority(_) => Accepts::Whole { least: 1, most: 99 },
+            Place::Switch(_) => Accepts::TrueOrFalse,
+            Place::Text(_) => Accepts::Text,
+            Place::Path(_) => Accepts::Path,
+            Place::PathOrNone(_) => Accepts::PathOrNone,
+            Place::Address(_) => Accepts::Address,
+            Place::Origins(_) => Accepts::Origins,
+            Place::Rectangle(_) => Accepts::Rectangle,
+            Place::Point(_) => Accepts::Point,
+            Place::Rule(_) => one_of(RuleName::ALL.map(RuleName::name)),
+            Place::Motion(_) => one_of(MotionName::ALL.map(MotionName::name)),
             Place::Standing(_) => {
-                let names = StandingName::ALL.map(|standing| format!("\"{}\"", standing.name()));
-                format!("one of \"{BY_THE_RULE}\", {}", names.join(", "))
+                one_of([BY_THE_RULE].into_iter().chain(StandingName::ALL.map(StandingName::name)))
             }
-            Place::Machine(_) => "\"simulated\"".into(),
-            Place::LogFormat(_) => "\"text\" or \"json\"".into(),
+            Place::Machine(_) => one_of([MachineKind::Simulated.name()]),
+            Place::LogFormat(_) => one_of(["text", "json"]),
         };
         Self { name, meaning, accepts, place }
     }
@@ -385,6 +375,10 @@ impl Key {
         }
         Some(())
     }
+}
+
+fn one_of(names: impl IntoIterator<Item = &'static str>) -> Accepts {
+    Accepts::OneOf { names: names.into_iter().map(str::to_owned).collect() }
 }
 
 /// The word for a standing place as the intention rule has it.

@@ -164,7 +164,7 @@ fn set(config: &mut Config, name: &str, value: &Value, origin: &str) -> Result<&
         origin: origin.into(),
         key: key.name,
         found: value.to_string(),
-        expected: key.accepts.clone(),
+        expected: key.accepts.to_string(),
     })
 }
 

@@ -1,5 +1,6 @@
-//! Real-time scheduling and locked memory, where permitted; in plain words what came of it.
+//! Real-time scheduling and locked memory, where permitted, and what came of it.
 
+use covr_wire::reason::Reason;
 use nix::sys::mman::{MlockAllFlags, mlockall};
 use nix::sys::resource::{RLIM_INFINITY, Resource, getrlimit};
 use thread_priority::{
@@ -8,19 +9,19 @@ use thread_priority::{
 };
 
 /// Ask for both for the calling thread.
-pub fn ask(priority: Option<u8>) -> String {
+pub fn ask(priority: Option<u8>) -> Vec<Reason> {
     let Some(priority) = priority else {
-        return "normal scheduling, memory not locked (control.real_time is false)".into();
+        return vec![Reason::RealTimeNotAsked];
     };
     let scheduling = match fifo(priority) {
-        Ok(()) => format!("SCHED_FIFO priority {priority}"),
-        Err(why) => format!("normal scheduling (SCHED_FIFO not permitted: {why})"),
+        Ok(()) => Reason::RealTime { priority },
+        Err(said) => Reason::RealTimeRefused { said },
     };
-    format!("{scheduling}, {}", locked_memory())
+    vec![scheduling, locked_memory()]
 }
 
 /// Future memory is locked only without a limit: with one, a later allocation would fail for being over it.
-fn locked_memory() -> String {
+fn locked_memory() -> Reason {
     let unlimited = getrlimit(Resource::RLIMIT_MEMLOCK).is_ok_and(|(soft, _)| soft == RLIM_INFINITY);
     let flags = if unlimited {
         MlockAllFlags::MCL_CURRENT | MlockAllFlags::MCL_FUTURE
@@ -28,9 +29,9 @@ fn locked_memory() -> String {
         MlockAllFlags::MCL_CURRENT
     };
     match mlockall(flags) {
-        Ok(()) if unlimited => "memory locked".into(),
-        Ok(()) => "present memory locked, future memory not (RLIMIT_MEMLOCK is limited)".into(),
-        Err(why) => format!("memory not locked ({})", why.desc()),
+        Ok(()) if unlimited => Reason::MemoryLocked,
+        Ok(()) => Reason::MemoryLockedForNow,
+        Err(why) => Reason::MemoryNotLocked { said: why.desc().into() },
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use arc_swap::ArcSwap;
+use covr_wire::reason::Reason;
 use tokio::sync::watch;
 
 /// Where a stop came from. Each has a lane of its own.
@@ -24,6 +25,13 @@ pub enum StopLaneName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("no acknowledgement from the drive within {} ms; use the wired stop", .0.as_millis())]
 pub struct NotReached(Duration);
+
+impl NotReached {
+    /// For whoever pressed.
+    pub fn reason(self) -> Reason {
+        Reason::DriveSilent { within_millis: self.0.as_millis() as u64 }
+    }
+}
 
 /// One lane.
 #[derive(Debug)]

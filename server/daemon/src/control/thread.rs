@@ -48,6 +48,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
         lateness_p99_micros: 0.0,
         lateness_max_micros: 0.0,
         scheduling: "not started".into(),
+        scheduling_why: Vec::new(),
     };
     let first = Published {
         generation: 0,
@@ -80,7 +81,9 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
     };
     let priority = setup.real_time_priority;
     std::thread::Builder::new().name("control".into()).spawn(move || {
-        run.control_loop.scheduling = real_time::ask(priority);
+        let why = real_time::ask(priority);
+        run.control_loop.scheduling = why.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        run.control_loop.scheduling_why = why;
         tracing::info!(scheduling = %run.control_loop.scheduling, rate_hz, "control loop runs");
         let end = match catch_unwind(AssertUnwindSafe(|| run.until_quit())) {
             Ok(()) => Ended::AsAsked,

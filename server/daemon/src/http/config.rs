@@ -23,7 +23,7 @@ pub fn routes() -> OpenApiRouter<Arc<App>> {
         example = json!({"version": "0.1.0", "built": {"profile": "release", "target": "x86_64-unknown-linux-gnu",
         "rustc": "rustc 1.95.0", "commit": null}, "file": "/etc/covr/covr.toml", "keys": [{"name": "control.rate_hz",
         "value": 250.0, "default": 250.0, "meaning": "Rate of the control loop, Hz.",
-        "accepts": "a number from 50 to 1000", "from": "default"}]}))))]
+        "accepts": "a number from 50 to 1000", "takes": {"kind": "number", "least": 50.0, "most": 1000.0}, "from": "default"}]}))))]
 async fn configuration(State(app): State<Arc<App>>) -> Json<ConfigInForce> {
     let default = Config::default();
     let keys = config::keys().into_iter().map(|key| ConfigKey {
@@ -32,7 +32,8 @@ async fn configuration(State(app): State<Arc<App>>) -> Json<ConfigInForce> {
         default: as_json(key.value(&default)),
         meaning: key.meaning.into(),
         from: app.origins.of(key.name),
-        accepts: key.accepts,
+        accepts: key.accepts.to_string(),
+        takes: key.accepts,
     });
     Json(ConfigInForce {
         version: env!("CARGO_PKG_VERSION").into(),

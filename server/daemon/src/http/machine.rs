@@ -12,6 +12,7 @@ use axum::response::{IntoResponse, Response};
 use covr_engine::mode::RequestKind;
 use covr_engine::observation::PersonId;
 use covr_engine::{Answer, Outcome};
+use covr_wire::reason::Reason;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 use utoipa::ToSchema;
@@ -110,7 +111,7 @@ async fn stop(
     let to_drive = app
         .stop(&asker, StopLaneName::Http, reason, received_at)
         .await
-        .map_err(|why| Problem::unavailable(why.to_string()))?;
+        .map_err(|why| Problem::unavailable(why.reason()))?;
     Ok(Json(StopAcknowledged { acknowledged: true, to_drive_micros: to_drive.as_micros() as u64 }))
 }
 
@@ -125,7 +126,7 @@ async fn confirm(
 ) -> Result<Json<Answered>, Problem> {
     let person = inside(&app, &id)?;
     let asker = Asker { by: "http", author: author.0 };
-    answered(app.confirm_origin(&asker, person).await?)
+    answered(&app, &app.confirm_origin(&asker, person).await?)
 }
 
 /// The person, whose headset is lost, has left the arena (R10).
@@ -139,27 +140,28 @@ async fn left(
 ) -> Result<Json<Answered>, Problem> {
     let person = inside(&app, &id)?;
     let asker = Asker { by: "http", author: author.0 };
-    answered(app.confirm_left(&asker, person).await?)
+    answered(&app, &app.confirm_left(&asker, person).await?)
 }
 
 fn inside(app: &App, id: &str) -> Result<PersonId, Problem> {
     let person = id.parse().ok().map(PersonId).filter(|person| app.persons.is_inside(*person));
-    person.ok_or_else(|| Problem::not_found(format!("person {id} is not in the arena")))
+    person.ok_or_else(|| Problem::not_found(Reason::PersonNotInside { person: id.into() }))
 }
 
 async fn ask(app: &App, author: Author, kind: RequestKind, body: &[u8]) -> Result<Json<Answered>, Problem> {
     let reason = ReasonBody::read(body)?;
     let asker = Asker { by: "http", author: author.0 };
-    answered(app.request(&asker, kind, reason).await?)
+    answered(app, &app.request(&asker, kind, reason).await?)
 }
 
-fn answered(answer: Answer) -> Result<Json<Answered>, Problem> {
+fn answered(app: &App, answer: &Answer) -> Result<Json<Answered>, Problem> {
+    let why = app.reason(answer);
     let outcome = match answer.outcome {
         Outcome::Accepted => "accepted",
         Outcome::AlreadySo => "already_so",
-        Outcome::Refused => return Err(Problem::refused(answer.detail)),
+        Outcome::Refused => return Err(Problem::refused(why)),
     };
-    Ok(Json(Answered { outcome: outcome.into(), detail: answer.detail }))
+    Ok(Json(Answered { outcome: outcome.into(), detail: why.to_string() }))
 }
 
 /// A stop does not wait longer for its own reason.

@@ -8,6 +8,7 @@ use axum::body::Bytes;
 use axum::extract::{Query, State};
 use covr_engine::frames::Floor;
 use covr_wire::answers::PriorChange;
+use covr_wire::reason::Reason;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use ts_rs::TS;
@@ -42,7 +43,8 @@ pub struct PriorsPreview {
     pub serves: Option<u32>,
     /// Id of the object that the rule would be committed to.
     pub committed: Option<String>,
-    /// Where the column would go if everybody stood still, 0.1 s apart; empty when it would go nowhere.
+    /// Where the column would go if everybody walked on for a moment and then stood, 0.1 s apart; empty when it would go
+    /// nowhere.
     pub planned_path_m: Vec<[f64; 2]>,
     /// Every object of the active scene, in its order.
     pub objects: Vec<ObjectPreview>,
@@ -80,7 +82,7 @@ async fn change(
     let done = app.stage.change_priors(&app.control, &app.store, &author.0, &wanted).await;
     let changes = done.map_err(|why| match why {
         PriorsRefused::Invalid(bad) => invalid(bad),
-        PriorsRefused::Refused(detail) => Problem::refused(detail),
+        PriorsRefused::Refused(why) => Problem::refused(Reason::new(&why, &app.persons.names())),
         PriorsRefused::NotDelivered(why) => why.into(),
         PriorsRefused::Store(why) => why.into(),
     })?;
@@ -124,7 +126,7 @@ async fn preview(State(app): State<Arc<App>>, body: Bytes) -> Result<Json<Priors
             objects: objects.collect(),
         }
     });
-    found.await.map(Json).map_err(|_| Problem::unavailable("the preview was not finished"))
+    found.await.map(Json).map_err(|_| Problem::unavailable(Reason::PreviewUnfinished))
 }
 
 /// Who changed which prior when, newest first.

@@ -6,6 +6,7 @@ use axum::extract::Request;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use covr_wire::reason::Reason;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 use utoipa::ToSchema;
@@ -20,11 +21,17 @@ pub struct Problem {
     #[serde(rename = "type")]
     pub kind: String,
     /// The kind in a few words.
-    pub title: String,
+    #[schema(value_type = String)]
+    pub title: Box<str>,
     /// The HTTP status.
     pub status: u16,
     /// What happened this time, in plain words.
     pub detail: String,
+    /// The same as an id and its values, where it is one of the known reasons.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(schema_with = reason_schema)]
+    #[ts(optional, type = "import(\"../generated/Reason\").Reason")]
+    pub why: Option<Box<Reason>>,
     /// The path that was asked.
     #[schema(value_type = String)]
     pub instance: Box<str>,
@@ -57,14 +64,15 @@ impl Problem {
             title: title.into(),
             status: status.as_u16(),
             detail: detail.into(),
+            why: None,
             instance: Box::default(),
             errors: Vec::new(),
         }
     }
 
     /// The machine or the scene does not allow it now.
-    pub fn refused(detail: impl Into<String>) -> Self {
-        Self::new(StatusCode::CONFLICT, "refused", "Refused", detail)
+    pub fn refused(why: Reason) -> Self {
+        Self::new(StatusCode::CONFLICT, "refused", "Refused", why.to_string()).because(why)
     }
 
     /// Well-formed, but not something that can be.
@@ -78,8 +86,8 @@ impl Problem {
     }
 
     /// There is no such thing.
-    pub fn not_found(detail: impl Into<String>) -> Self {
-        Self::new(StatusCode::NOT_FOUND, "not-found", "Not found", detail)
+    pub fn not_found(why: Reason) -> Self {
+        Self::new(StatusCode::NOT_FOUND, "not-found", "Not found", why.to_string()).because(why)
     }
 
     /// Not for this asker.
@@ -88,8 +96,8 @@ impl Problem {
     }
 
     /// It could be done at another time.
-    pub fn unavailable(detail: impl Into<String>) -> Self {
-        Self::new(StatusCode::SERVICE_UNAVAILABLE, "unavailable", "Unavailable", detail)
+    pub fn unavailable(why: Reason) -> Self {
+        Self::new(StatusCode::SERVICE_UNAVAILABLE, "unavailable", "Unavailable", why.to_string()).because(why)
     }
 
     /// What a bare status means.
@@ -104,6 +112,10 @@ impl Problem {
             _ => ("http", title),
         };
         Self::new(status, kind, title, detail)
+    }
+
+    fn because(self, why: Reason) -> Self {
+        Self { why: Some(Box::new(why)), ..self }
     }
 }
 
@@ -120,13 +132,13 @@ impl IntoResponse for Problem {
 impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
         tracing::error!(%error, "the store failed");
-        Self::unavailable("the database did not answer; the server's log says why")
+        Self::unavailable(Reason::DatabaseSilent)
     }
 }
 
 impl From<NotDelivered> for Problem {
     fn from(error: NotDelivered) -> Self {
-        Self::unavailable(error.to_string())
+        Self::unavailable(error.reason())
     }
 }
 
@@ -149,6 +161,11 @@ pub async fn finish(request: Request, next: Next) -> Response {
     parts.headers.remove(header::CONTENT_LENGTH);
     parts.headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(PROBLEM_JSON));
     Response::from_parts(parts, Body::new(body))
+}
+
+/// The wire's own schema, which the document has.
+fn reason_schema() -> utoipa::openapi::Ref {
+    utoipa::openapi::Ref::from_schema_name("Reason")
 }
 
 /// The media type.

@@ -8,6 +8,7 @@ use axum::extract::{Path, Query, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use covr_wire::answers::{SceneSummary, SceneVersionSummary};
+use covr_wire::reason::Reason;
 use covr_wire::scene::{SceneError, parse_scene, scene_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -164,7 +165,7 @@ async fn activate(
     let (id, version, name) = (stored.id, stored.version, stored.document.name.clone());
     let answer = app.stage.activate(&app.control, &app.store, stored).await.map_err(|why| match why {
         ActivationRefused::Invalid(errors) => refused(&[], errors),
-        ActivationRefused::Refused(detail) => Problem::refused(detail),
+        ActivationRefused::Refused(why) => Problem::refused(Reason::new(&why, &app.persons.names())),
         ActivationRefused::NotDelivered(why) => why.into(),
         ActivationRefused::Store(why) => why.into(),
     })?;
@@ -174,7 +175,7 @@ async fn activate(
         json!({ "author": author.0, "scene": id, "version": version, "name": name }),
     );
     app.recorder.settled().await;
-    Ok(Json(SceneActivated { id, version, detail: answer.detail }))
+    Ok(Json(SceneActivated { id, version, detail: app.reason(&answer).to_string() }))
 }
 
 /// The JSON Schema of a scene.
@@ -209,8 +210,9 @@ fn number(id: &str) -> Result<i64, Problem> {
 }
 
 fn no_scene(id: &str, version: Option<i64>) -> Problem {
+    let scene = id.into();
     Problem::not_found(match version {
-        None => format!("there is no scene {id}"),
-        Some(version) => format!("there is no version {version} of scene {id}"),
+        None => Reason::NoScene { scene },
+        Some(version) => Reason::NoSceneVersion { scene, version },
     })
 }

@@ -10,6 +10,7 @@ use axum::Json;
 use axum::extract::{Path, Query, State};
 use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
+use covr_wire::reason::Reason;
 use covr_wire::records::{Session, SessionDetail};
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
@@ -231,7 +232,7 @@ async fn find(app: &App, id: &str) -> Result<SessionDetail, Problem> {
         Some(number) => app.store.session(number, SystemTime::now()).await?,
         None => None,
     };
-    found.ok_or_else(|| Problem::not_found(format!("there is no session \"{id}\"")))
+    found.ok_or_else(|| Problem::not_found(Reason::NoSession { session: id.into() }))
 }
 
 /// From seconds of a session to server time.

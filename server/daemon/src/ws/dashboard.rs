@@ -10,10 +10,11 @@ use axum::extract::State;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade, close_code};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
+use covr_engine::Answer;
 use covr_engine::mode::RequestKind;
 use covr_engine::observation::PersonId;
-use covr_engine::{Answer, Outcome};
-use covr_wire::dashboard::{FromDashboard, MachineRequest, MachineShape, Snapshot, ToDashboard};
+use covr_wire::dashboard::{FromDashboard, MachineRequest, MachineShape, Outcome, Snapshot, ToDashboard};
+use covr_wire::reason::Reason;
 use futures_util::StreamExt;
 use futures_util::stream::{SplitSink, SplitStream};
 use tokio::sync::broadcast::error::RecvError;
@@ -21,7 +22,7 @@ use tokio::sync::{OwnedSemaphorePermit, mpsc};
 
 use super::{Gone, close, send, why_closing};
 use crate::app::{App, Asker};
-use crate::control::StopLaneName;
+use crate::control::{NotDelivered, StopLaneName};
 use crate::live::wire_snapshot;
 
 /// Accept a dashboard.
@@ -106,15 +107,18 @@ async fn answer(app: &App, text: &str, received_at: Instant) -> ToDashboard {
         Ok(FromDashboard::Stop { request_id, reason }) => {
             match app.stop(&asker, StopLaneName::Dashboard, given(reason), received_at).await {
                 Ok(to_drive) => {
-                    let answer = Answer { outcome: Outcome::Accepted, detail: "stopped".into() };
-                    ToDashboard::answer(request_id, answer, Some(to_drive.as_micros() as u64))
+                    let micros = to_drive.as_micros() as u64;
+                    ToDashboard::answer(request_id, Outcome::Accepted, Reason::Stopped, Some(micros))
                 }
-                Err(why) => refused(request_id, why.to_string()),
+                Err(why) => refused(request_id, why.reason()),
             }
         }
         Ok(FromDashboard::Request { request_id, request, reason }) => {
             match ask(app, &asker, request, given(reason)).await {
-                Ok(answer) => ToDashboard::answer(request_id, answer, None),
+                Ok(answer) => {
+                    let outcome = answer.outcome.into();
+                    ToDashboard::answer(request_id, outcome, app.reason(&answer), None)
+                }
                 Err(why) => refused(request_id, why),
             }
         }
@@ -122,7 +126,13 @@ async fn answer(app: &App, text: &str, received_at: Instant) -> ToDashboard {
             // Answer the request that was meant, where it can be told.
             let meant = serde_json::from_str::<serde_json::Value>(text).ok();
             let id = meant.and_then(|m| m.get("request_id")?.as_u64()).and_then(|id| u32::try_from(id).ok());
-            refused(id.unwrap_or(0), format!("not understood: {error}"))
+            ToDashboard::Answer {
+                request_id: id.unwrap_or(0),
+                outcome: Outcome::Refused,
+                detail: format!("not understood: {error}"),
+                why: None,
+                to_drive_micros: None,
+            }
         }
     }
 }
@@ -132,12 +142,12 @@ async fn ask(
     asker: &Asker,
     request: MachineRequest,
     reason: Option<String>,
-) -> Result<Answer, String> {
+) -> Result<Answer, Reason> {
     let done = match request {
         MachineRequest::Home => app.request(asker, RequestKind::Home, reason).await,
         MachineRequest::Arm => app.request(asker, RequestKind::Arm, reason).await,
         MachineRequest::Disarm => app.request(asker, RequestKind::Disarm, reason).await,
-        MachineRequest::Reset if reason.is_none() => return Err("a reset needs a reason".into()),
+        MachineRequest::Reset if reason.is_none() => return Err(Reason::ResetNeedsReason),
         MachineRequest::Reset => app.request(asker, RequestKind::Reset, reason).await,
         MachineRequest::ConfirmOrigin(person) if app.persons.is_inside(PersonId(person)) => {
             app.confirm_origin(asker, PersonId(person)).await
@@ -146,14 +156,14 @@ async fn ask(
             app.confirm_left(asker, PersonId(person)).await
         }
         MachineRequest::ConfirmOrigin(person) | MachineRequest::ConfirmLeft(person) => {
-            return Err(format!("person {person} is not in the arena"));
+            return Err(Reason::PersonNotInside { person: app.persons.name(PersonId(person)) });
         }
     };
-    done.map_err(|why| why.to_string())
+    done.map_err(NotDelivered::reason)
 }
 
-fn refused(request_id: u32, detail: String) -> ToDashboard {
-    ToDashboard::answer(request_id, Answer { outcome: Outcome::Refused, detail }, None)
+fn refused(request_id: u32, why: Reason) -> ToDashboard {
+    ToDashboard::answer(request_id, Outcome::Refused, why, None)
 }
 
 fn given(reason: Option<String>) -> Option<String> {

@@ -14,7 +14,7 @@ use crate::person::Person;
 use crate::safety::governor::Governor;
 use crate::safety::parameters::Parameters;
 use crate::safety::path::State;
-use crate::safety::separation::{Conflict, Separation};
+use crate::safety::separation::{Conflict, Separation, Threat};
 use crate::scene::Scene;
 use crate::time::{Span, Time};
 
@@ -122,9 +122,7 @@ impl Following {
         parameters: &Parameters,
         limits: &Limits,
     ) -> Option<Wish> {
-        self.walkers.clear();
-        self.walkers
-            .extend(persons.iter().filter_map(|p| p.threat(now)).map(|threat| Walker::foreseen(&threat)));
+        self.foresee(persons.iter().filter_map(|p| p.threat(now)));
         self.visitors.retain(|v| persons.iter().any(|p| p.id() == v.person));
         if self.believed_priors != priors {
             self.believed_priors.clear();
@@ -182,6 +180,12 @@ impl Following {
         });
         self.serves = served.map(|v| v.person);
         self.wish
+    }
+
+    /// Where everybody is, and goes on to, for the plans to come.
+    pub fn foresee(&mut self, threats: impl Iterator<Item = Threat>) {
+        self.walkers.clear();
+        self.walkers.extend(threats.map(|threat| Walker::foreseen(&threat)));
     }
 
     /// Move the commanded state on by one period.
@@ -334,6 +338,15 @@ impl Following {
 
     pub fn motion(&self) -> MotionName {
         self.motion
+    }
+
+    pub fn standing(&self) -> StandingName {
+        self.standing
+    }
+
+    /// How long the planner's present plan takes, s; none with another motion, and where it does not arrive.
+    pub fn arrives_in_secs(&self) -> Option<f64> {
+        self.planner.arrives_in_secs().filter(|_| self.motion == MotionName::Planner)
     }
 
     /// The belief about the served visitor.

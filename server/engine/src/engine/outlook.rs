@@ -1,4 +1,5 @@
-//! The outlook: where the column would go from here if everybody stood still with their pose as it is.
+//! The outlook: where the column would go from here if everybody looked where they look, walked on for as long as a
+//! present velocity is believed, and then stood.
 //!
 //! It is a copy of what the engine decides with, rolled forward by the engine's own code before a machine that follows
 //! perfectly. It yields places and weights. It never makes a command, and nothing that it finds is decided upon.
@@ -11,6 +12,7 @@ use crate::frames::{Floor, Planar};
 use crate::intention::Belief;
 use crate::machine::{Limits, Travel};
 use crate::mode::Mode;
+use crate::motion::foresight::WALKS_ON_SECS;
 use crate::observation::PersonId;
 use crate::person::Person;
 use crate::safety::governor::Governor;
@@ -145,25 +147,30 @@ impl Outlook {
     fn roll(self, wish: Option<Wish>) -> Vec<Floor> {
         let Some((mut governor, mut since)) = self.under_way else { return Vec::new() };
         let mut following = self.following;
-        let still = |threat| Threat { velocity: Planar::ZERO, ..threat };
-        let threats: Vec<Threat> =
-            self.persons.iter().filter_map(|person| person.threat(self.at).map(still)).collect();
-        let separation = Separation {
-            scene: &self.scene,
-            limits: &self.limits,
-            travel: &self.travel,
-            threats: &threats,
-            parameters: &self.parameters,
-        };
+        let now: Vec<Threat> = self.persons.iter().filter_map(|person| person.threat(self.at)).collect();
+        let mut threats = now.clone();
+        let mut ahead = Span::ZERO;
         let from = governor.commanded().position();
         let mut path: Vec<Floor> = Vec::with_capacity(MOST_POINTS);
         let mut points_at_rest = 0;
         while path.len() < MOST_POINTS && points_at_rest < RESTS_AFTER_POINTS {
             for _ in 0..STEPS_A_POINT {
+                for (threat, now) in threats.iter_mut().zip(&now) {
+                    *threat = walked_on(now, ahead);
+                }
+                following.foresee(threats.iter().copied());
+                let separation = Separation {
+                    scene: &self.scene,
+                    limits: &self.limits,
+                    travel: &self.travel,
+                    threats: &threats,
+                    parameters: &self.parameters,
+                };
                 let commanded = governor.commanded();
                 let measured = State::moving(commanded.position(), commanded.velocity());
                 following.follow(&mut governor, wish, &measured, &separation, since, STEP);
                 since = since + STEP;
+                ahead = ahead + STEP;
             }
             let here = governor.commanded().position();
             let moved_m = path.last().unwrap_or(&from).distance_m(here);
@@ -175,9 +182,16 @@ impl Outlook {
     }
 }
 
+/// A person so much later, as the safety rule will see them: with a pose as old as it is now.
+fn walked_on(now: &Threat, ahead: Span) -> Threat {
+    let walks = WALKS_ON_SECS.min(ahead.secs());
+    let velocity = if ahead.secs() < WALKS_ON_SECS { now.velocity } else { Planar::ZERO };
+    Threat { head: now.head + now.velocity * walks, velocity, ..*now }
+}
+
 /// Between two points of a path.
 pub const POINT_EVERY: Span = Span::from_millis(100);
-/// Four seconds: farther ahead nobody stands still.
+/// Four seconds: farther ahead people do something else.
 pub const MOST_POINTS: usize = 40;
 /// The engine's code takes steps of this length here, five periods at the usual rate at the cost of one. Its motions
 /// are closed forms of time: for two seconds the way is the same within a centimetre. Later, along the edge of what the

@@ -10,6 +10,7 @@ use crate::frames::Floor;
 use crate::machine::Homing;
 use crate::mode::{self, Conditions, Mode, RequestKind, Response};
 use crate::observation::PersonId;
+use crate::reason::Reason;
 use crate::scene::Scene;
 use crate::scene::footprint::KeepOut;
 use crate::snapshot::RuleId;
@@ -35,8 +36,8 @@ pub enum Request {
 pub struct Answer {
     /// Accepted, already so, or refused.
     pub outcome: Outcome,
-    /// In plain words.
-    pub detail: String,
+    /// Why, or what came of it.
+    pub reason: Reason,
 }
 
 /// What came of a request, in one word.
@@ -66,26 +67,25 @@ impl Engine {
 
     fn request_machine(&mut self, now: Time, kind: RequestKind, reason: String) -> Answer {
         match mode::respond(self.mode, kind, &self.conditions(now)) {
-            Response::AlreadySo(detail) => Answer { outcome: Outcome::AlreadySo, detail: detail.to_owned() },
-            Response::Refuse(detail) => Answer { outcome: Outcome::Refused, detail },
-            Response::Go(Mode::Homing) if let Some(detail) = self.shape_on_the_way_home() => refused(detail),
+            Response::AlreadySo(reason) => Answer { outcome: Outcome::AlreadySo, reason },
+            Response::Refuse(reason) => refused(reason),
+            Response::Go(Mode::Homing) if let Some(reason) = self.shape_on_the_way_home() => refused(reason),
             Response::Go(to) => {
                 match kind {
                     RequestKind::Stop => {
-                        let why = if reason.is_empty() { "no reason given" } else { &reason };
-                        self.latch(RuleId(4), format!("software stop: {why}"), now);
+                        self.latch(RuleId(4), Reason::SoftwareStop(reason), now);
                     }
                     RequestKind::Home | RequestKind::Arm => {
                         self.arena_confirmed_clear = self.persons.is_empty();
-                        self.enter(to, kind.name(), now);
+                        self.enter(to, None, Reason::Asked(kind), now);
                     }
-                    RequestKind::Disarm => self.enter(to, "disarmed", now),
+                    RequestKind::Disarm => self.enter(to, None, Reason::Asked(kind), now),
                     RequestKind::Reset => {
-                        self.supervisor.software_stop(false, "not pressed", now, &mut self.pending);
-                        self.enter(to, &format!("reset: {reason}"), now);
+                        self.supervisor.software_stop(None, now, &mut self.pending);
+                        self.enter(to, None, Reason::ResetAsked(reason), now);
                     }
                 }
-                Answer { outcome: Outcome::Accepted, detail: format!("now {}", self.mode.name()) }
+                accepted(Reason::NowIn(self.mode))
             }
         }
     }
@@ -98,8 +98,8 @@ impl Engine {
         }
     }
 
-    /// The keep-out shape, in words, that homing would come too near: straight to the corner, each axis until its switch.
-    fn shape_on_the_way_home(&self) -> Option<String> {
+    /// The keep-out shape that homing would come too near: straight to the corner, each axis until its switch.
+    fn shape_on_the_way_home(&self) -> Option<Reason> {
         let from = self.report?.position;
         let corner = self.config.travel.min;
         let farthest = (from.x - corner.x).max(from.y - corner.y).max(0.0);
@@ -112,10 +112,8 @@ impl Engine {
         for centre in on_the_way {
             let near = |k: &KeepOut| k.distance_m(self.scene.footprint(), centre) < needed;
             if let Some(index) = self.scene.keep_outs().iter().position(near) {
-                let id = &self.scene.spec().keep_outs[index].id;
-                return Some(format!(
-                    "homing would come within {needed:.2} m of the keep-out shape \"{id}\""
-                ));
+                let keep_out = self.scene.spec().keep_outs[index].id.clone();
+                return Some(Reason::HomingNearKeepOut { keep_out, required_m: needed });
             }
         }
         None
@@ -123,26 +121,26 @@ impl Engine {
 
     fn confirm_origin(&mut self, id: PersonId) -> Answer {
         match self.persons.iter_mut().find(|p| p.id() == id) {
-            None => refused(format!("person {} is not in the arena", id.0)),
+            None => refused(Reason::PersonNotInside(id)),
             Some(person) if !person.awaits_confirmation() => {
-                Answer { outcome: Outcome::AlreadySo, detail: "this person's origin is confirmed".to_owned() }
+                Answer { outcome: Outcome::AlreadySo, reason: Reason::OriginConfirmedAlready(id) }
             }
             Some(person) => {
                 person.confirm_origin();
-                Answer { outcome: Outcome::Accepted, detail: format!("person {} confirmed", id.0) }
+                accepted(Reason::OriginConfirmed(id))
             }
         }
     }
 
     fn confirm_left(&mut self, now: Time, id: PersonId) -> Answer {
         match self.person(id) {
-            None => refused(format!("person {} is not in the arena", id.0)),
+            None => refused(Reason::PersonNotInside(id)),
             Some(person) if person.lost(now, &self.parameters).is_none() => {
-                refused(format!("the headset of person {} is tracked: they are in the arena", id.0))
+                refused(Reason::PersonStillTracked(id))
             }
             Some(_) => {
                 self.leave(id);
-                Answer { outcome: Outcome::Accepted, detail: format!("person {} has left", id.0) }
+                accepted(Reason::PersonLeft(id))
             }
         }
     }
@@ -158,31 +156,29 @@ impl Engine {
     fn set_priors(&mut self, changes: &[(usize, f64)]) -> Answer {
         for (index, prior) in changes {
             if *index >= self.priors.len() {
-                return refused(format!("object {index} of {} objects", self.priors.len()));
+                return refused(Reason::NoSuchObject { index: *index, objects: self.priors.len() });
             }
             if !(0.0..=1.0).contains(prior) {
-                return refused(format!("prior {prior} of object {index}: expected 0 to 1"));
+                return refused(Reason::PriorOutOfRange { index: *index, prior: *prior });
             }
         }
         for (index, prior) in changes {
             self.priors[*index] = *prior;
         }
-        Answer { outcome: Outcome::Accepted, detail: format!("{} priors set", changes.len()) }
+        accepted(Reason::PriorsSet(changes.len()))
     }
 
     fn activate(&mut self, scene: Arc<Scene>) -> Answer {
         if self.mode == Mode::Homing {
-            return refused("homing: wait until it is done".to_owned());
+            return refused(Reason::WaitForHoming);
         }
         if let Some(report) = self.report.filter(|r| r.homing == Homing::Homed) {
             // Inside a keep-out's distance nothing may move, so the column would be shut in.
             let shuts_in =
                 |k: &KeepOut| k.distance_m(scene.footprint(), report.position) < self.parameters.radius_m;
             if let Some(index) = scene.keep_outs().iter().position(shuts_in) {
-                let (id, r) = (&scene.spec().keep_outs[index].id, self.parameters.radius_m);
-                return refused(format!(
-                    "the column stands within {r} m of the keep-out shape \"{id}\": move it away first"
-                ));
+                let keep_out = scene.spec().keep_outs[index].id.clone();
+                return refused(Reason::ColumnInKeepOut { keep_out, required_m: self.parameters.radius_m });
             }
         }
         self.priors = scene.spec().objects.iter().map(|o| o.prior).collect();
@@ -191,12 +187,16 @@ impl Engine {
         for person in &mut self.persons {
             person.place_among(&self.scene);
         }
-        Answer { outcome: Outcome::Accepted, detail: "scene activated".to_owned() }
+        accepted(Reason::SceneActivated)
     }
 }
 
-fn refused(detail: String) -> Answer {
-    Answer { outcome: Outcome::Refused, detail }
+fn accepted(reason: Reason) -> Answer {
+    Answer { outcome: Outcome::Accepted, reason }
+}
+
+fn refused(reason: Reason) -> Answer {
+    Answer { outcome: Outcome::Refused, reason }
 }
 
 /// Homing's course is looked at this often, m.

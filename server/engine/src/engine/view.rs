@@ -6,7 +6,7 @@ use crate::frames::{Floor, Planar};
 use crate::intention::Belief;
 use crate::machine::{Homing, Limits};
 use crate::mode::{self, Mode, RequestKind, Response};
-use crate::motion::travel_secs;
+use crate::motion::{MotionName, travel_secs};
 use crate::person::Person;
 use crate::safety::path::State;
 use crate::safety::separation::{Conflict, Obstacle, Separation};
@@ -29,7 +29,7 @@ impl Engine {
         let conditions = self.conditions(now);
         let refusal = |kind| match mode::respond(self.mode, kind, &conditions) {
             Response::Go(_) => (kind, None),
-            Response::AlreadySo(why) => (kind, Some(why.to_owned()).filter(|_| kind != RequestKind::Stop)),
+            Response::AlreadySo(why) => (kind, Some(why).filter(|_| kind != RequestKind::Stop)),
             Response::Refuse(why) => (kind, Some(why)),
         };
         Snapshot {
@@ -43,7 +43,12 @@ impl Engine {
             persons: self.persons.iter().map(|p| self.person_state(p, now)).collect(),
             objects: self.objects(),
             intention_rule: self.following.rule().name(),
+            standing: self.following.standing().name(),
             motion: self.following.motion().name(),
+            none_probability: self.following.belief().map_or(0.0, |belief| {
+                let total = belief.total();
+                if total > 0.0 { belief.none / total } else { 0.0 }
+            }),
         }
     }
 
@@ -52,6 +57,7 @@ impl Engine {
         let velocity = self.report.map_or(Planar::ZERO, |r| r.velocity);
         let commanded = self.governor.map_or_else(|| State::moving(position, velocity), |g| *g.commanded());
         let wish = self.following.wish();
+        let least_arrival_secs = wish.map(|w| arrival_secs(position, w.target, &self.config.limits));
         ColumnState {
             position,
             velocity,
@@ -64,6 +70,15 @@ impl Engine {
             activity: self.activity(position, commanded.velocity().norm()),
             held_by: self.following.held_by().map(|conflict| self.held_by(&conflict)),
             goes_around: self.following.goes_around(),
+            arrival_secs: match (self.mode, self.following.motion()) {
+                (Mode::Following, MotionName::Planner) => {
+                    let there = least_arrival_secs.filter(|secs| *secs == 0.0);
+                    there.or(self.following.arrives_in_secs().filter(|_| wish.is_some()))
+                }
+                (Mode::Following, MotionName::Proxy) => least_arrival_secs,
+                _ => None,
+            },
+            least_arrival_secs,
             current_amps: self.report.map_or([0.0; 2], |r| r.current_amps),
             homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
         }
@@ -144,7 +159,8 @@ impl Engine {
         objects
             .map(|(i, (object, spec))| {
                 let weight = belief.and_then(|b| b.weights.get(i)).copied().unwrap_or(0.0);
-                let touch_secs = sights.and_then(|sights| sights.get(i)).map(|sight| {
+                let sight = sights.and_then(|sights| sights.get(i));
+                let touch_secs = sight.map(|sight| {
                     let left_m = (sight.distance_m - ARM_M).max(0.0);
                     left_m / pace_mps
                 });
@@ -156,6 +172,8 @@ impl Engine {
                     column_place: object.column_place(),
                     arrival_secs: arrival_secs(from, object.column_place(), &self.config.limits),
                     touch_secs,
+                    angle_rad: sight.map(|sight| sight.angle_rad),
+                    distance_m: sight.map(|sight| sight.distance_m),
                 }
             })
             .collect()

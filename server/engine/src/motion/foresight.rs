@@ -109,7 +109,7 @@ fn braked(v: f64, limits: &AxisLimits, reaction_secs: f64) -> (f64, f64) {
 }
 
 /// A present velocity says little about later than this, s: from 0 to 1 s the evaluation hardly tells them apart.
-const WALKS_ON_SECS: f64 = 0.6;
+pub const WALKS_ON_SECS: f64 = 0.6;
 /// Slower than this nothing moves, m/s.
 const STANDS_MPS: f64 = 1e-3;
 /// Separation takes the column to be this much faster than told, m/s.

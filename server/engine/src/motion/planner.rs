@@ -115,7 +115,12 @@ impl Planner {
         &self.velocities
     }
 
-    /// How long the plan takes, s from when it was made; past the horizon where it does not arrive.
+    /// How long the plan takes, s from when it was made; none where it does not arrive as far ahead as it looks.
+    pub fn arrives_in_secs(&self) -> Option<f64> {
+        Some(self.arrival_secs).filter(|secs| *secs < HORIZON_SECS)
+    }
+
+    /// The same; past the horizon where it does not arrive.
     pub fn arrival_secs(&self) -> f64 {
         self.arrival_secs
     }

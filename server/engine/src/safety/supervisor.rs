@@ -9,6 +9,7 @@ use crate::event::EventKind;
 use crate::frames::Floor;
 use crate::machine::{Homing, MachineReport, Travel};
 use crate::person::{Lost, Person};
+use crate::reason::Reason;
 use crate::safety::parameters::Parameters;
 use crate::safety::path::State;
 use crate::safety::separation::{Conflict, Obstacle};
@@ -80,11 +81,10 @@ impl Supervisor {
             rule: RuleId(n),
             status: if n == 4 { RuleStatus::Clear } else { RuleStatus::Idle },
             reason: match n {
-                4 => "not pressed",
-                11 | 12 | 14 => "not watched in this version",
-                _ => IDLE,
-            }
-            .to_owned(),
+                4 => Reason::StopNotPressed,
+                11 | 12 | 14 => Reason::NotWatched,
+                _ => Reason::NothingToWatch,
+            },
             since: Time::ZERO,
         };
         Self {
@@ -111,11 +111,7 @@ impl Supervisor {
         let missed = self.missed_in_a_row;
         let late = missed >= self.parameters.missed_deadlines;
         self.set(RuleId(9), breach_if(late), watched.now, events, || {
-            if late {
-                format!("{missed} control steps in a row began late")
-            } else {
-                "control steps begin in time".into()
-            }
+            if late { Reason::StepsLate(missed) } else { Reason::StepsInTime }
         });
         self.rules.iter().filter(|r| r.status == RuleStatus::Breached).filter_map(|r| demand(r.rule)).max()
     }
@@ -124,51 +120,37 @@ impl Supervisor {
     pub fn separation(&mut self, conflict: Option<Conflict>, now: Time, events: &mut Vec<EventKind>) {
         let with = conflict.map(|c| c.with);
         let status = |limits: bool| if limits { RuleStatus::Limiting } else { RuleStatus::Clear };
-        let words = |what: String| {
-            move || {
-                conflict.map_or_else(String::new, |c| {
-                    format!(
-                        "slowed or turned for {what}: {:.2} m on the way, {:.2} m needed",
-                        c.distance_m, c.required_m
-                    )
-                })
-            }
-        };
+        let (distance_m, required_m) = conflict.map_or((0.0, 0.0), |c| (c.distance_m, c.required_m));
         match with {
-            Some(Obstacle::Person(id)) => {
-                self.set(RuleId(3), status(true), now, events, words(format!("person {}", id.0)));
+            Some(Obstacle::Person(person)) => {
+                let reason = || Reason::PersonInTheWay { person, distance_m, required_m };
+                self.set(RuleId(3), status(true), now, events, reason);
             }
-            _ => self.set(RuleId(3), status(false), now, events, || "nobody in the way".into()),
+            _ => self.set(RuleId(3), status(false), now, events, || Reason::NobodyInTheWay),
         }
         match with {
-            Some(Obstacle::KeepOut(index)) => {
-                self.set(
-                    RuleId(13),
-                    status(true),
-                    now,
-                    events,
-                    words(format!("keep-out shape {}", index + 1)),
-                );
+            Some(Obstacle::KeepOut(keep_out)) => {
+                let reason = || Reason::KeepOutInTheWay { keep_out, distance_m, required_m };
+                self.set(RuleId(13), status(true), now, events, reason);
             }
-            _ => self.set(RuleId(13), status(false), now, events, || "no keep-out shape in the way".into()),
+            _ => self.set(RuleId(13), status(false), now, events, || Reason::NoKeepOutInTheWay),
         }
         if with == Some(Obstacle::Travel) {
-            self.set(RuleId(1), RuleStatus::Limiting, now, events, || {
-                "slowed at the end of the travel".into()
-            });
+            self.set(RuleId(1), RuleStatus::Limiting, now, events, || Reason::TravelEndInTheWay);
         }
     }
 
     /// Separation is not asked now: nothing is wanted.
     pub fn separation_idle(&mut self, now: Time, events: &mut Vec<EventKind>) {
         for rule in [3, 13] {
-            self.set(RuleId(rule), RuleStatus::Idle, now, events, || IDLE.into());
+            self.set(RuleId(rule), RuleStatus::Idle, now, events, || Reason::NothingToWatch);
         }
     }
 
-    /// The software stop was pressed, or reset (R4).
-    pub fn software_stop(&mut self, pressed: bool, reason: &str, now: Time, events: &mut Vec<EventKind>) {
-        self.set(RuleId(4), breach_if(pressed), now, events, || reason.to_owned());
+    /// The software stop was pressed, for this reason, or reset (R4).
+    pub fn software_stop(&mut self, pressed: Option<&Reason>, now: Time, events: &mut Vec<EventKind>) {
+        let reason = || pressed.cloned().unwrap_or(Reason::StopNotPressed);
+        self.set(RuleId(4), breach_if(pressed.is_some()), now, events, reason);
     }
 
     /// Forget what counts towards R5, R6 and R7: the commanded state was taken anew from the measured one.
@@ -195,42 +177,37 @@ impl Supervisor {
     }
 
     /// Why a latched stop or a fault cannot be left: a rule that led to one is breached now. R4 clears by the reset itself.
-    pub fn cause_still_there(&self) -> Option<String> {
+    pub fn cause_still_there(&self) -> Option<Reason> {
         let grave = |r: &&RuleState| {
             r.status == RuleStatus::Breached
                 && r.rule != RuleId(4)
                 && matches!(demand(r.rule), Some(Demand::LatchedStop(_) | Demand::Fault(_)))
         };
-        self.rules.iter().find(grave).map(|r| format!("{}: {}", r.rule.name(), r.reason))
+        let cause = self.rules.iter().find(grave)?;
+        Some(Reason::CauseStillThere { rule: cause.rule, because: Box::new(cause.reason.clone()) })
     }
 
     fn watch_machine(&mut self, watched: &Watched<'_>, events: &mut Vec<EventKind>) {
         let now = watched.now;
         let Some(report) = watched.report else {
-            self.set(RuleId(8), RuleStatus::Idle, now, events, || "the machine has not answered yet".into());
+            self.set(RuleId(8), RuleStatus::Idle, now, events, || Reason::NoAnswerYet);
             return;
         };
         let p = self.parameters;
         let silence = now - report.answered_at;
         let dead = silence > p.link;
         self.set(RuleId(8), breach_if(dead), now, events, || {
-            let millis = silence.micros() / 1000;
-            if dead { format!("no good answer for {millis} ms") } else { "the controller answers".into() }
+            if dead { Reason::NoGoodAnswer(silence.micros() / 1000) } else { Reason::ControllerAnswers }
         });
         let homed = report.homing == Homing::Homed;
         let beyond = if homed { -watched.travel.depth_m(report.position) } else { 0.0 };
         self.set(RuleId(1), breach_if(beyond > BEYOND_TRAVEL_M), now, events, || {
-            if beyond > BEYOND_TRAVEL_M {
-                format!("the column is {:.1} cm past its travel", beyond * 100.0)
-            } else {
-                "inside the travel".into()
-            }
+            if beyond > BEYOND_TRAVEL_M { Reason::PastTravel(beyond) } else { Reason::InsideTravel }
         });
         let amps = report.current_amps[0].max(report.current_amps[1]);
         let over = self.over_current.for_at_least(amps > p.current_amps, now, p.current_for);
-        self.set(RuleId(5), breach_if(over), now, events, || {
-            format!("{amps:.1} A against a limit of {:.1} A", p.current_amps)
-        });
+        let reason = || Reason::MotorCurrent { amps, limit_amps: p.current_amps };
+        self.set(RuleId(5), breach_if(over), now, events, reason);
         self.watch_tracking(watched, report, events);
     }
 
@@ -240,16 +217,11 @@ impl Supervisor {
         let Some(commanded) = watched.tracking.filter(|_| report.homing == Homing::Homed) else {
             self.tracking_restarted();
             // With the drive let go there is nothing to follow; what was breached stays so until the reset looks again.
-            self.set(RuleId(6), RuleStatus::Idle, now, events, || IDLE.into());
-            self.set(
-                RuleId(7),
-                if failed { RuleStatus::Breached } else { RuleStatus::Idle },
-                now,
-                events,
-                || {
-                    if failed { "homing found no switch".into() } else { IDLE.into() }
-                },
-            );
+            self.set(RuleId(6), RuleStatus::Idle, now, events, || Reason::NothingToWatch);
+            let status = if failed { RuleStatus::Breached } else { RuleStatus::Idle };
+            self.set(RuleId(7), status, now, events, || {
+                if failed { Reason::NoSwitchFound } else { Reason::NothingToWatch }
+            });
             return;
         };
         let error = commanded.position().distance_m(report.position);
@@ -263,11 +235,9 @@ impl Supervisor {
             false => RuleStatus::Clear,
         };
         self.set(RuleId(6), status, now, events, || match (status, strays) {
-            (RuleStatus::Limiting, _) => "not where it was commanded to be: held until it rests".into(),
-            (RuleStatus::Breached, false) => {
-                format!("not where it was commanded to be, {times} times in a row")
-            }
-            _ => format!("{:.1} cm behind the command", error * 100.0),
+            (RuleStatus::Limiting, _) => Reason::Astray,
+            (RuleStatus::Breached, false) => Reason::AstrayAgain(times),
+            _ => Reason::BehindCommand(error),
         });
 
         let difference = (commanded.velocity() - report.velocity).norm();
@@ -275,9 +245,9 @@ impl Supervisor {
             self.velocity_error.for_at_least(difference > p.velocity_error_mps, now, p.velocity_error_for);
         let stalled = self.stalled(now, commanded, report.position);
         self.set(RuleId(7), breach_if(runs || stalled), now, events, || match (runs, stalled) {
-            (true, _) => format!("moves {difference:.2} m/s otherwise than commanded"),
-            (_, true) => "commanded and does not move".into(),
-            _ => "moves as commanded".into(),
+            (true, _) => Reason::MovesOtherwise(difference),
+            (_, true) => Reason::DoesNotMove,
+            _ => Reason::MovesAsCommanded,
         });
     }
 
@@ -314,20 +284,15 @@ impl Supervisor {
                 None => RuleStatus::Clear,
             };
             self.set(RuleId(rule), status, now, events, || match who {
-                Some(person) => lost_in_words(person, now, &p),
-                None if nobody => "nobody in the arena".into(),
-                None => "everybody's headset is tracked".into(),
+                Some(person) => why_lost(person, now, &p),
+                None if nobody => Reason::ArenaEmpty,
+                None => Reason::HeadsetsTracked,
             });
         }
         let unsure = nobody && !watched.arena_confirmed_clear;
         let status = if unsure { RuleStatus::Limiting } else { RuleStatus::Clear };
         self.set(RuleId(16), status, now, events, || {
-            if unsure {
-                "nobody is tracked and nobody has confirmed that the arena is clear: no motion by itself"
-                    .into()
-            } else {
-                "people are tracked, or the arena was confirmed clear".into()
-            }
+            if unsure { Reason::ArenaUnconfirmed } else { Reason::ArenaAccountedFor }
         });
     }
 
@@ -337,7 +302,7 @@ impl Supervisor {
         status: RuleStatus,
         now: Time,
         events: &mut Vec<EventKind>,
-        reason: impl FnOnce() -> String,
+        reason: impl FnOnce() -> Reason,
     ) {
         let state = &mut self.rules[usize::from(rule.0) - 1];
         // The numbers of a rule that shapes the motion change from step to step.
@@ -387,21 +352,6 @@ pub fn demand(rule: RuleId) -> Option<Demand> {
     }
 }
 
-/// What clears a stop by this rule, in plain words.
-pub fn clears_when(rule: RuleId) -> &'static str {
-    match rule.0 {
-        2 => "clears by itself 1 s after every headset is tracked again",
-        9 => "clears by itself 1 s after the control loop keeps its deadlines again",
-        10 => {
-            "clears 1 s after the VR client is back, or after somebody confirms that the person has left the arena"
-        }
-        15 => "clears 1 s after the game master confirms the person on the floor mark",
-        8 => "reset, with a reason, once the controller answers again; then home and arm",
-        1 => "move the column back by hand, then reset with a reason; then arm",
-        _ => "reset, with a reason, once the cause is gone; then arm",
-    }
-}
-
 /// Whether the machine left what certificates allow it beside the command, when it was measured.
 fn is_astray(commanded: &State, report: &MachineReport, commanded_at: Time, p: &Parameters) -> bool {
     let velocity = commanded.velocity();
@@ -413,22 +363,19 @@ fn breach_if(breached: bool) -> RuleStatus {
     if breached { RuleStatus::Breached } else { RuleStatus::Clear }
 }
 
-fn lost_in_words(person: &Person, now: Time, parameters: &Parameters) -> String {
-    let id = person.id().0;
+fn why_lost(person: &Person, now: Time, parameters: &Parameters) -> Reason {
+    let id = person.id();
     match person.lost(now, parameters) {
-        Some(Lost::NoPoseYet(secs)) => {
-            format!("person {id} entered {secs:.2} s ago and has sent no pose yet")
-        }
-        Some(Lost::TooOld(secs)) => format!("the newest pose of person {id} is {secs:.2} s old"),
-        Some(Lost::Untracked) => format!("the headset of person {id} does not know its place"),
-        Some(Lost::NotWorn) => format!("person {id} took the headset off"),
-        Some(Lost::Jumped) => format!("the pose of person {id} jumped faster than a head can move"),
-        Some(Lost::ClientGone) => format!("the VR client of person {id} is gone"),
-        None => format!("person {id} must be confirmed on the floor mark: the tracking origin changed"),
+        Some(Lost::NoPoseYet(secs)) => Reason::NoPoseYet(id, secs),
+        Some(Lost::TooOld(secs)) => Reason::PoseTooOld(id, secs),
+        Some(Lost::Untracked) => Reason::HeadsetUntracked(id),
+        Some(Lost::NotWorn) => Reason::HeadsetOff(id),
+        Some(Lost::Jumped) => Reason::PoseJumped(id),
+        Some(Lost::ClientGone) => Reason::ClientGone(id),
+        None => Reason::OriginUnconfirmed(id),
     }
 }
 
-const IDLE: &str = "nothing to watch now";
 /// Measurement noise and the machine's overshoot past the travel, m.
 const BEYOND_TRAVEL_M: f64 = 0.01;
 /// R7: looked at over windows of this length.

@@ -337,7 +337,10 @@ mod tests {
                 assert!(pair[1].abs() <= 2.5 + 1e-9);
                 // The last step to rest drops what little deceleration is left.
                 let is_last = pair[1] == 0.0;
-                assert!(is_last || (pair[1] - pair[0]).abs() <= AxisLimits::PAPER.jerk_mps3 * TICK_SECS + 1e-9, "{pair:?}");
+                assert!(
+                    is_last || (pair[1] - pair[0]).abs() <= AxisLimits::PAPER.jerk_mps3 * TICK_SECS + 1e-9,
+                    "{pair:?}"
+                );
             }
         }
     }

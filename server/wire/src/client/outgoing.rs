@@ -1,5 +1,7 @@
 //! From the engine's state to what a client is told, in its own convention and units.
 
+use std::collections::BTreeMap;
+
 use covr_engine::frames::{Point, Pose, Room};
 use covr_engine::machine::Limits;
 use covr_engine::mode::Mode;
@@ -11,6 +13,8 @@ use super::{
     ActiveScene, ClientLimits, ColumnNow, MAX_FRAME_BYTES, ObjectPlace, Prediction, PropAt, StopState,
 };
 use crate::convention::ClientFrame;
+use crate::dashboard::clears_when;
+use crate::reason::Reason;
 use crate::scene::SceneDocument;
 
 impl ActiveScene {
@@ -91,12 +95,13 @@ impl Prediction {
 impl From<&Snapshot> for StopState {
     fn from(state: &Snapshot) -> Self {
         let stop = state.stop.as_ref();
+        let nobody = BTreeMap::new();
         Self {
             stopped: matches!(state.mode, Mode::ProtectiveStop | Mode::LatchedStop | Mode::Faulted),
             mode: state.mode.into(),
             rule: stop.map(|stop| stop.rule.name()),
-            reason: stop.map(|stop| stop.reason.clone()),
-            clears_when: stop.map(|stop| stop.clears_when.clone()),
+            reason: stop.map(|stop| Reason::new(&stop.reason, &nobody).to_string()),
+            clears_when: stop.map(|stop| clears_when(stop.rule).into()),
         }
     }
 }

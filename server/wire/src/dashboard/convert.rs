@@ -9,14 +9,15 @@ use covr_engine::mode::{Mode as EngineMode, RequestKind};
 use covr_engine::observation::PersonId;
 use covr_engine::safety::separation::{Term, Terms};
 use covr_engine::snapshot::{self as engine, RuleId};
-use covr_engine::{Answer, Outcome as EngineOutcome, Request};
+use covr_engine::{Outcome as EngineOutcome, Request};
 use serde_json::json;
 
 use super::{
     Activity, Client, Column, ControlLoop, Event, MachineRequest, MachineShape, Mode, Object, Outcome,
     Person, RequestState, RuleState, RuleStatus, SeparationTerm, SeparationTerms, Snapshot, StopCause,
-    ToDashboard, reason,
+    ToDashboard,
 };
+use crate::reason::{self, Reason};
 
 /// What a snapshot holds that the engine does not know.
 #[derive(Debug, Clone)]
@@ -68,20 +69,24 @@ impl Snapshot {
             at_micros: state.at.micros(),
             mode: state.mode.into(),
             mode_since_micros: state.mode_since.micros(),
-            stop: state.stop.as_ref().map(Into::into),
+            stop: state.stop.as_ref().map(|stop| stop_cause(stop, around.names)),
             requests: state
                 .refusals
                 .iter()
-                .map(|(kind, why)| RequestState {
-                    request: request_name(*kind).into(),
-                    refused_because: why.clone(),
+                .map(|(kind, why)| {
+                    let why = why.as_ref().map(|why| Reason::new(why, around.names));
+                    let refused_because = why.as_ref().map(Reason::to_string);
+                    RequestState { request: request_name(*kind).into(), refused_because, why }
                 })
                 .collect(),
-            rules: state.rules.iter().map(Into::into).collect(),
+            rules: state.rules.iter().map(|rule| rule_state(rule, around.names)).collect(),
             column: column(state, around.names),
             persons: state.persons.iter().map(|person| self::person(person, around.names)).collect(),
             objects: state.objects.iter().map(Into::into).collect(),
             intention_rule: state.intention_rule.into(),
+            standing: state.standing.into(),
+            motion: state.motion.into(),
+            none_probability: state.none_probability,
             control_loop: around.control_loop,
             clients: around.clients,
             scene_id: around.scene_id,
@@ -100,16 +105,23 @@ impl Event {
     ) -> Self {
         let who = |person: &PersonId| name_of(*person, names);
         let (kind, summary, detail) = match &event.kind {
-            EventKind::ModeChanged { from, to, because } => (
-                "mode_changed",
-                format!("{} to {}: {because}", in_words(*from), in_words(*to)),
-                json!({"from": from.name(), "to": to.name(), "because": because}),
-            ),
-            EventKind::RuleBreached { rule, reason } => (
-                "rule_breached",
-                format!("{} {}: {reason}", rule.name(), rule_title(*rule)),
-                json!({"rule": rule.name(), "title": rule_title(*rule), "reason": reason}),
-            ),
+            EventKind::ModeChanged { from, to, rule, because } => {
+                let why = Reason::new(because, names);
+                let because = rule.map_or_else(|| why.to_string(), |rule| format!("{}: {why}", rule.name()));
+                (
+                    "mode_changed",
+                    format!("{} to {}: {because}", in_words(*from), in_words(*to)),
+                    json!({"from": from.name(), "to": to.name(), "rule": rule.map(RuleId::name), "because": because, "why": why}),
+                )
+            }
+            EventKind::RuleBreached { rule, reason } => {
+                let why = Reason::new(reason, names);
+                (
+                    "rule_breached",
+                    format!("{} {}: {why}", rule.name(), rule_title(*rule)),
+                    json!({"rule": rule.name(), "title": rule_title(*rule), "reason": why.to_string(), "why": why}),
+                )
+            }
             EventKind::RuleCleared { rule } => (
                 "rule_cleared",
                 format!("{} {} is kept again", rule.name(), rule_title(*rule)),
@@ -154,9 +166,9 @@ impl MachineRequest {
 }
 
 impl ToDashboard {
-    /// The engine's answer to the request of this id; `to_drive_micros` for a stop.
-    pub fn answer(request_id: u32, answer: Answer, to_drive_micros: Option<u64>) -> Self {
-        Self::Answer { request_id, outcome: answer.outcome.into(), detail: answer.detail, to_drive_micros }
+    /// The answer to the request of this id; `to_drive_micros` for a stop.
+    pub fn answer(request_id: u32, outcome: Outcome, why: Reason, to_drive_micros: Option<u64>) -> Self {
+        Self::Answer { request_id, outcome, detail: why.to_string(), why: Some(why), to_drive_micros }
     }
 }
 
@@ -207,29 +219,6 @@ impl From<engine::RuleStatus> for RuleStatus {
     }
 }
 
-impl From<&engine::StopCause> for StopCause {
-    fn from(cause: &engine::StopCause) -> Self {
-        Self {
-            rule: cause.rule.name(),
-            reason: cause.reason.clone(),
-            clears_when: cause.clears_when.clone(),
-            since_micros: cause.since.micros(),
-        }
-    }
-}
-
-impl From<&engine::RuleState> for RuleState {
-    fn from(rule: &engine::RuleState) -> Self {
-        Self {
-            rule: rule.rule.name(),
-            title: rule_title(rule.rule).into(),
-            status: rule.status.into(),
-            reason: rule.reason.clone(),
-            since_micros: rule.since.micros(),
-        }
-    }
-}
-
 impl From<&engine::ObjectState> for Object {
     fn from(object: &engine::ObjectState) -> Self {
         Self {
@@ -240,6 +229,8 @@ impl From<&engine::ObjectState> for Object {
             column_place_m: floor(object.column_place),
             arrival_secs: object.arrival_secs,
             touch_secs: object.touch_secs,
+            angle_rad: object.angle_rad,
+            distance_m: object.distance_m,
         }
     }
 }
@@ -255,8 +246,52 @@ pub const fn request_name(kind: RequestKind) -> &'static str {
     }
 }
 
+/// What clears a stop by this rule.
+pub(crate) fn clears_when(rule: RuleId) -> &'static str {
+    match rule.0 {
+        2 => "clears by itself 1 s after every headset is tracked again",
+        9 => "clears by itself 1 s after the control loop keeps its deadlines again",
+        10 => {
+            "clears 1 s after the VR client is back, or after somebody confirms that the person has left the arena"
+        }
+        15 => "clears 1 s after the game master confirms the person on the floor mark",
+        8 => "reset, with a reason, once the controller answers again; then home and arm",
+        1 => "move the column back by hand, then reset with a reason; then arm",
+        _ => "reset, with a reason, once the cause is gone; then arm",
+    }
+}
+
+/// Clauses as one sentence.
+fn sentence(clauses: &[Reason]) -> String {
+    clauses.iter().map(Reason::to_string).collect::<Vec<_>>().join("; ")
+}
+
+fn stop_cause(cause: &engine::StopCause, names: &BTreeMap<PersonId, String>) -> StopCause {
+    let why = Reason::new(&cause.reason, names);
+    StopCause {
+        rule: cause.rule.name(),
+        reason: why.to_string(),
+        why,
+        clears_when: clears_when(cause.rule).into(),
+        since_micros: cause.since.micros(),
+    }
+}
+
+fn rule_state(rule: &engine::RuleState, names: &BTreeMap<PersonId, String>) -> RuleState {
+    let why = Reason::new(&rule.reason, names);
+    RuleState {
+        rule: rule.rule.name(),
+        title: rule_title(rule.rule).into(),
+        status: rule.status.into(),
+        reason: why.to_string(),
+        why,
+        since_micros: rule.since.micros(),
+    }
+}
+
 fn column(state: &engine::Snapshot, names: &BTreeMap<PersonId, String>) -> Column {
     let column = &state.column;
+    let why = Reason::of_column(state, names);
     Column {
         position_m: floor(column.position),
         velocity_mps: planar(column.velocity),
@@ -266,7 +301,10 @@ fn column(state: &engine::Snapshot, names: &BTreeMap<PersonId, String>) -> Colum
         serves: column.serves.map(|person| person.0),
         committed: column.committed.and_then(|i| state.objects.get(i)).map(|object| object.id.clone()),
         activity: column.activity.into(),
-        reason: reason::of(state, names),
+        reason: sentence(&why),
+        why,
+        decision: reason::decision(state, names),
+        arrival_secs: column.arrival_secs,
         planned_path_m: Vec::new(),
         current_amps: column.current_amps,
         homed: column.homed,
@@ -326,7 +364,7 @@ fn person(person: &engine::PersonState, names: &BTreeMap<PersonId, String>) -> P
     }
 }
 
-pub(super) fn name_of(person: PersonId, names: &BTreeMap<PersonId, String>) -> String {
+pub(crate) fn name_of(person: PersonId, names: &BTreeMap<PersonId, String>) -> String {
     names.get(&person).cloned().unwrap_or_else(|| format!("person {}", person.0))
 }
 
@@ -413,14 +451,19 @@ mod tests {
         };
         let served = said(EventKind::Served { person: PersonId(3), object: 0 });
         assert_eq!(served, ("served".into(), "the column stands at kettle for Ada".into()));
-        let breached = said(EventKind::RuleBreached { rule: RuleId(2), reason: "0.6 s old".into() });
-        assert_eq!(breached, ("rule_breached".into(), "R2 tracking: 0.6 s old".into()));
+        let breached = said(EventKind::RuleBreached {
+            rule: RuleId(2),
+            reason: covr_engine::reason::Reason::PoseTooOld(PersonId(3), 0.6),
+        });
+        let words = "R2 tracking: the newest pose of Ada is 0.60 s old";
+        assert_eq!(breached, ("rule_breached".into(), words.into()));
         let changed = said(EventKind::ModeChanged {
             from: EngineMode::Following,
             to: EngineMode::LatchedStop,
-            because: "stop pressed".into(),
+            rule: Some(RuleId(4)),
+            because: covr_engine::reason::Reason::SoftwareStop("hand".into()),
         });
-        assert_eq!(changed.1, "following to latched stop: stop pressed");
+        assert_eq!(changed.1, "following to latched stop: R4: software stop: hand");
     }
 
     #[test]

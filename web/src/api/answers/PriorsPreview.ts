@@ -18,7 +18,8 @@ serves: number | null,
  */
 committed: string | null, 
 /**
- * Where the column would go if everybody stood still, 0.1 s apart; empty when it would go nowhere.
+ * Where the column would go if everybody walked on for a moment and then stood, 0.1 s apart; empty when it would go
+ * nowhere.
  */
 planned_path_m: Array<[number, number]>, 
 /**

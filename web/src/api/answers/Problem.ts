@@ -22,6 +22,10 @@ status: number,
  */
 detail: string, 
 /**
+ * The same as an id and its values, where it is one of the known reasons.
+ */
+why?: import("../generated/Reason").Reason, 
+/**
  * The path that was asked.
  */
 instance: string, 

@@ -23,6 +23,6 @@ kind: string,
  */
 summary: string, 
 /**
- * Particulars, by kind.
+ * Particulars, by kind; `why` is a reason as an id and its values.
  */
 detail: unknown, };

@@ -31,4 +31,12 @@ arrival_secs: number,
 /**
  * Seconds until the visitor could touch it; null without a visitor.
  */
-touch_secs: number | null, };
+touch_secs: number | null, 
+/**
+ * Between the visitor's view axis and it, rad; null without a visitor.
+ */
+angle_rad: number | null, 
+/**
+ * From the visitor's head to its surface, m; null without a visitor.
+ */
+distance_m: number | null, };

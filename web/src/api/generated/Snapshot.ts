@@ -58,6 +58,18 @@ objects: Array<Object>,
  */
 intention_rule: string, 
 /**
+ * Where the column stands while it is not plain what will be touched, by name.
+ */
+standing: string, 
+/**
+ * How the column is moved, by name.
+ */
+motion: string, 
+/**
+ * The share of the belief that says "none of them", 0 to 1; 0 for a rule that does not know it.
+ */
+none_probability: number, 
+/**
  * The control loop's health.
  */
 control_loop: ControlLoop, 

@@ -3,6 +3,7 @@ import type { Event } from "./Event";
 import type { LinkThresholds } from "./LinkThresholds";
 import type { MachineShape } from "./MachineShape";
 import type { Outcome } from "./Outcome";
+import type { Reason } from "./Reason";
 import type { SceneDocument } from "./SceneDocument";
 import type { Snapshot } from "./Snapshot";
 
@@ -50,6 +51,10 @@ outcome: Outcome,
  * Why it was refused, or what it did, in plain words.
  */
 detail: string, 
+/**
+ * The same as an id and its values; null for a message that was not understood.
+ */
+why: Reason | null, 
 /**
  * For a stop: from the server's reception to the braking command written to the drive, microseconds.
  */

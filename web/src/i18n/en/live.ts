@@ -1,6 +1,7 @@
 /** Words of the area `live`. */
 export const live = {
   title: "Live",
+  betweenClauses: "; ",
   // What the column is about.
   column: "Column",
   activities: {
@@ -24,6 +25,25 @@ export const live = {
   current: "Current",
   notHomed: "not homed",
   none: "none",
+  decisions: {
+    title: "Decisions",
+    belief: "Believes",
+    place: "Stands",
+    route: "Goes",
+    arrival: "Arrives",
+    rule: "intention rule",
+    standing: "where to stand",
+    motion: "motion",
+    none: "none of them",
+    others: (count: number) => (count === 1 ? "another" : `${count} others`),
+    nobody: "serves nobody",
+    nothing: "–",
+    toGo: (metres: string, speed: string) => `${metres} m to go, ${speed} m/s`,
+    there: "it is there",
+    inSecs: (secs: string) => `in ${secs} s`,
+    unforeseen: "not foreseen",
+    hand: (secs: string) => `the hand in ${secs} s`,
+  },
   // The picture.
   topView: "Top view",
   sideView: "Side view",
@@ -115,6 +135,7 @@ export const live = {
     machine: "Machine",
     persons: "Persons",
     rules: "Safety rules",
+    decisions: "Decisions",
     weights: "Weights",
     priors: "Priors",
     timeline: "Events",

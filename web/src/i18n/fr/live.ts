@@ -1,6 +1,7 @@
 /** Mots du domaine `live`. */
 export const live = {
   title: "Direct",
+  betweenClauses: " ; ",
   // Ce que fait la colonne.
   column: "Colonne",
   activities: {
@@ -24,6 +25,25 @@ export const live = {
   current: "Courant",
   notHomed: "sans origine",
   none: "aucune",
+  decisions: {
+    title: "Décisions",
+    belief: "Croit",
+    place: "Se tient",
+    route: "Va",
+    arrival: "Arrive",
+    rule: "règle d’intention",
+    standing: "où se tenir",
+    motion: "mouvement",
+    none: "aucun d’eux",
+    others: (count: number) => (count === 1 ? "un autre" : `${count} autres`),
+    nobody: "ne sert personne",
+    nothing: "–",
+    toGo: (metres: string, speed: string) => `encore ${metres} m, ${speed} m/s`,
+    there: "elle y est",
+    inSecs: (secs: string) => `dans ${secs} s`,
+    unforeseen: "non prévu",
+    hand: (secs: string) => `la main dans ${secs} s`,
+  },
   // L’image.
   topView: "Vue de dessus",
   sideView: "Vue de côté",
@@ -115,6 +135,7 @@ export const live = {
     machine: "Machine",
     persons: "Personnes",
     rules: "Règles de sécurité",
+    decisions: "Décisions",
     weights: "Poids",
     priors: "A priori",
     timeline: "Événements",

@@ -121,7 +121,7 @@ export function DraftPanel(props: {
       <small id="draft-keys">{words().records.draft.keys}</small>
       <Show when={props.draft.trouble}>
         {(why) => (
-          <p class="answer refused" role="alert" lang="en" data-testid="not-stored">
+          <p class="answer refused" role="alert" data-testid="not-stored">
             {words().records.draft.notStored(why())}
           </p>
         )}

@@ -8,6 +8,7 @@ import { fileNameOf, writeJson } from "../../lib/sceneText";
 import type { Live } from "../../live/live";
 import { Arena } from "../Arena";
 import { Comparison } from "./Comparison";
+import { troubleOf } from "../../lib/trouble";
 
 /** Everything about the scene of that number. */
 export function SceneDetail(props: {
@@ -41,7 +42,7 @@ export function SceneDetail(props: {
       if (!found.some(({ version }) => version === shown())) setShown(newest);
       if (!found.some(({ version }) => version === against())) setAgainst(found[1]?.version ?? newest);
     } catch (error) {
-      if (!gone) setTrouble(messageOf(error));
+      if (!gone) setTrouble(troubleOf(error));
     }
   };
   const loadDocument = async (version: number): Promise<void> => {
@@ -50,7 +51,7 @@ export function SceneDetail(props: {
       const document = await readScene(props.id, version);
       if (!gone) setDocuments((known) => new Map([...known, [version, document]]));
     } catch (error) {
-      if (!gone) setTrouble(messageOf(error));
+      if (!gone) setTrouble(troubleOf(error));
     }
   };
   createEffect(on([() => props.row?.version, () => props.live.scene()?.id, () => props.live.scene()?.version], () => void load()));
@@ -71,12 +72,12 @@ export function SceneDetail(props: {
     setActivating(true);
     setOutcome(null);
     try {
-      const detail = await activateScene(props.id, version, props.author);
-      setOutcome({ good: true, said: words().records.activate.done(name(), version), detail });
+      await activateScene(props.id, version, props.author);
+      setOutcome({ good: true, said: words().records.activate.done(name(), version), detail: "" });
       props.changed();
       await load();
     } catch (error) {
-      setOutcome({ good: false, said: words().records.activate.refused(name()), detail: messageOf(error) });
+      setOutcome({ good: false, said: words().records.activate.refused(name()), detail: troubleOf(error) });
     } finally {
       setActivating(false);
       setAsking(false);
@@ -128,7 +129,7 @@ export function SceneDetail(props: {
                   <Show when={outcome()}>
                     {(result) => (
                       <p class="answer" classList={{ refused: !result().good }} role={result().good ? "status" : "alert"} data-testid="activation">
-                        {result().said} <span lang="en">{result().detail}</span>
+                        {result().said} {result().detail}
                       </p>
                     )}
                   </Show>
@@ -249,8 +250,4 @@ function Confirmation(props: {
       </button>
     </div>
   );
-}
-
-function messageOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }

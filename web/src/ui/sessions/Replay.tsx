@@ -11,8 +11,10 @@ import { labelOf } from "../../lib/labels";
 import { clockOf, play, playerAt, timeBeside, type Player, type PlayerAction } from "../../lib/player";
 import { densityFor, EVERY_FRAME, Recording, type Density, type Moment } from "../../lib/recording";
 import { Arena } from "../Arena";
+import { EventSaid } from "../EventSaid";
 import { howEnded, sizeOf } from "./SessionList";
 import { markOf, Transport } from "./Transport";
+import { troubleOf } from "../../lib/trouble";
 
 /** The session, standing at a time at first. */
 export function Replay(props: { readonly session: SessionDetail; readonly startSecs: number; readonly seekTo: () => number | null }): JSX.Element {
@@ -93,7 +95,7 @@ export function Replay(props: { readonly session: SessionDetail; readonly startS
       setEvents(found);
       setEventsTrouble(null);
     } catch (error) {
-      if (!gone) setEventsTrouble(messageOf(error));
+      if (!gone) setEventsTrouble(troubleOf(error));
     }
   };
   void readEvents();
@@ -220,7 +222,7 @@ export function Replay(props: { readonly session: SessionDetail; readonly startS
                   >
                     <time>{clockOf(eventTimes()[index()] ?? 0)}</time>
                     <span class="event-kind">{kindOf(event.kind)}</span>
-                    <span class="event-summary" lang="en">{event.summary}</span>
+                    <EventSaid event={event} label={(object) => labelOf(scene(), object)} />
                   </button>
                 </li>
               )}
@@ -354,10 +356,6 @@ function keepInSight(button: HTMLElement): void {
   const [inner, outer] = [button.getBoundingClientRect(), list.getBoundingClientRect()];
   if (inner.top < outer.top) list.scrollTop -= outer.top - inner.top;
   else if (inner.bottom > outer.bottom) list.scrollTop += inner.bottom - outer.bottom;
-}
-
-function messageOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }
 
 function twoDigits(value: number | undefined): string {

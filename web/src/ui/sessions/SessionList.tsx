@@ -5,6 +5,7 @@ import type { Session } from "../../api/types";
 import { words } from "../../i18n";
 import { dayAndTime, decimal, span } from "../../lib/format";
 import type { Live } from "../../live/live";
+import { troubleOf } from "../../lib/trouble";
 
 /** The list. */
 export function SessionList(props: { readonly live: Live }): JSX.Element {
@@ -31,7 +32,7 @@ export function SessionList(props: { readonly live: Live }): JSX.Element {
       setSearched(asked);
       setTrouble(null);
     } catch (error) {
-      if (mine === latest) setTrouble(error instanceof Error ? error.message : String(error));
+      if (mine === latest) setTrouble(troubleOf(error));
     }
   };
   createEffect(on([() => props.live.link().phase, () => props.live.snapshot()?.session_id], () => void read(null)));

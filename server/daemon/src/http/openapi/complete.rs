@@ -1,6 +1,7 @@
 //! What all operations have in common, added to the document in one place: what the layers around the handlers answer, who
 //! asks, names that are unique, and an example of every body, serialised from the types themselves.
 
+use covr_wire::reason::Reason;
 use serde_json::{Map, Value, json};
 
 use super::super::problem::{PROBLEM_JSON, Problem};
@@ -201,14 +202,24 @@ impl Operation<'_> {
         let kind = match status {
             400 => Problem::malformed(words, Vec::new()),
             403 => Problem::forbidden(words),
-            404 => Problem::not_found(words),
-            409 => Problem::refused(words),
+            404 => Problem::not_found(missing(self.path)),
+            409 => Problem::refused(Reason::WaitForHoming),
             422 => Problem::invalid(words, vec![samples::problem_item()]),
-            503 => Problem::unavailable(words),
+            503 => Problem::unavailable(Reason::Busy),
             other => Problem::of_status(axum::http::StatusCode::from_u16(other).ok()?),
         };
         let instance = self.path.replace("{id}", "1").into();
         serde_json::to_value(Problem { instance, ..kind }).ok()
+    }
+}
+
+/// What an example of an operation could not find.
+fn missing(path: &str) -> Reason {
+    let number = || "1".to_owned();
+    match path.split('/').nth(3) {
+        Some("scenes") => Reason::NoScene { scene: number() },
+        Some("sessions") => Reason::NoSession { session: number() },
+        _ => Reason::PersonNotInside { person: number() },
     }
 }
 

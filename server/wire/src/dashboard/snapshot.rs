@@ -1,0 +1,337 @@
+//! The whole state at one moment, as dashboards and `GET /api/v1/state` have it: room frame, SI units.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use ts_rs::TS;
+
+use crate::reason::Reason;
+
+/// Everything at one moment; also the body of `GET /api/v1/state`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct Snapshot {
+    /// Grows by one with each published snapshot.
+    #[ts(type = "number")]
+    pub generation: u64,
+    /// Server time, microseconds since its start.
+    #[ts(type = "number")]
+    pub at_micros: i64,
+    /// The state of the machine.
+    pub mode: Mode,
+    /// Since when, server time.
+    #[ts(type = "number")]
+    pub mode_since_micros: i64,
+    /// Why the machine is stopped; null unless in a stop or faulted.
+    pub stop: Option<StopCause>,
+    /// What can be asked now, and why not.
+    pub requests: Vec<RequestState>,
+    /// Every safety rule, R1 first.
+    pub rules: Vec<RuleState>,
+    /// The column.
+    pub column: Column,
+    /// Everybody in the arena.
+    pub persons: Vec<Person>,
+    /// Every object of the active scene, in its order.
+    pub objects: Vec<Object>,
+    /// The intention rule in use.
+    pub intention_rule: String,
+    /// Where the column stands while it is not plain what will be touched, by name.
+    pub standing: String,
+    /// How the column is moved, by name.
+    pub motion: String,
+    /// The share of the belief that says "none of them", 0 to 1; 0 for a rule that does not know it.
+    pub none_probability: f64,
+    /// The control loop's health.
+    pub control_loop: ControlLoop,
+    /// Connected VR clients.
+    pub clients: Vec<Client>,
+    /// Store id of the active scene.
+    pub scene_id: Option<i64>,
+    /// Store id of the running session.
+    pub session_id: Option<i64>,
+}
+
+/// Whether a request would be accepted now.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct RequestState {
+    /// `home`, `arm`, `disarm`, `stop` or `reset`.
+    pub request: String,
+    /// Why it would be refused, in plain words; null if it would be accepted.
+    pub refused_because: Option<String>,
+    /// The same as an id and its values.
+    pub why: Option<Reason>,
+}
+
+/// What stopped the machine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct StopCause {
+    /// `R1` to `R16`.
+    pub rule: String,
+    /// What happened, in plain words.
+    pub reason: String,
+    /// The same as an id and its values.
+    pub why: Reason,
+    /// What clears it, in plain words; the same for every stop of a rule.
+    pub clears_when: String,
+    /// When, server time.
+    #[ts(type = "number")]
+    pub since_micros: i64,
+}
+
+/// How a rule stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
+#[serde(rename_all = "snake_case")]
+pub enum RuleStatus {
+    /// Kept, not in the way.
+    Clear,
+    /// It shapes the motion now.
+    Limiting,
+    /// Breached: it stops the machine.
+    Breached,
+    /// Nothing to watch now.
+    Idle,
+}
+
+/// One safety rule.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct RuleState {
+    /// `R1` to `R16`.
+    pub rule: String,
+    /// A short name: "travel", "tracking", ...
+    pub title: String,
+    /// How it stands.
+    pub status: RuleStatus,
+    /// In plain words, with values and units.
+    pub reason: String,
+    /// The same as an id and its values.
+    pub why: Reason,
+    /// Since when, server time.
+    #[ts(type = "number")]
+    pub since_micros: i64,
+}
+
+/// The column, room frame, m and m/s.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct Column {
+    /// Measured centre.
+    pub position_m: [f64; 2],
+    /// Measured velocity.
+    pub velocity_mps: [f64; 2],
+    /// Commanded centre.
+    pub commanded_m: [f64; 2],
+    /// The spring-damper proxy.
+    pub proxy_m: [f64; 2],
+    /// Where it is wanted; null when nobody is served.
+    pub target_m: Option<[f64; 2]>,
+    /// Id of the person served.
+    pub serves: Option<u32>,
+    /// Id of the object that the rule is committed to.
+    pub committed: Option<String>,
+    /// What it is about.
+    pub activity: Activity,
+    /// Why it does that, in plain words, with values and units.
+    pub reason: String,
+    /// The same, clause by clause, each as an id and its values.
+    pub why: Vec<Reason>,
+    /// Why, decision by decision; null while it does not follow, and when nobody is served.
+    pub decision: Option<Decision>,
+    /// When it will be where it is wanted by the way that it takes now, s; null where that is not known, and when nobody
+    /// is served.
+    pub arrival_secs: Option<f64>,
+    /// Where it would go from here if everybody walked on for a moment and then stood, 0.1 s apart; empty when it goes
+    /// nowhere.
+    pub planned_path_m: Vec<[f64; 2]>,
+    /// Motor currents, A.
+    pub current_amps: [f64; 2],
+    /// Positions are in the room frame.
+    pub homed: bool,
+}
+
+/// Why the column does what it does, decision by decision: each as ids with their values.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct Decision {
+    /// Why the rule believes what it believes.
+    pub belief: Vec<Reason>,
+    /// Why it is wanted where it is wanted.
+    pub place: Vec<Reason>,
+    /// Why it takes the way that it takes.
+    pub route: Vec<Reason>,
+    /// What the time until it is there is made of.
+    pub arrival: Vec<Reason>,
+}
+
+/// What the column is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
+#[serde(rename_all = "snake_case")]
+pub enum Activity {
+    /// The drive is released.
+    Released,
+    /// It looks for the switches.
+    Homing,
+    /// Homed, holding, not armed.
+    Ready,
+    /// Armed, and there is nobody to serve, or nothing to serve them.
+    Waiting,
+    /// On its way to where it is wanted.
+    Approaching,
+    /// On its way, slower or another way because of a safety rule.
+    Yielding,
+    /// It may not go on: a safety rule holds it.
+    Blocked,
+    /// It stands where it is wanted.
+    InPlace,
+    /// Stopped, or braking for a stop.
+    Stopped,
+}
+
+/// The terms of the separation rule: `required_m` of a person is their sum.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct SeparationTerms {
+    /// r, m.
+    pub radius_m: f64,
+    /// What column and person cover in the reaction time, m.
+    pub reaction_m: f64,
+    /// What the column covers while it brakes, m.
+    pub braking_m: f64,
+    /// What the person may walk while it brakes, m.
+    pub walking_m: f64,
+    /// What the person may have walked since the pose was taken, m.
+    pub age_m: f64,
+    /// The greatest of the four beyond r.
+    pub binding: SeparationTerm,
+}
+
+/// A term of the separation rule.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
+#[serde(rename_all = "snake_case")]
+pub enum SeparationTerm {
+    /// Reaction time.
+    Reaction,
+    /// The column's braking.
+    Braking,
+    /// The person's walking.
+    Walking,
+    /// The age of the pose.
+    Age,
+}
+
+/// One person, room frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct Person {
+    /// The server's number of this person in this run.
+    pub id: u32,
+    /// The name that the client gave.
+    pub name: String,
+    /// Head position; null before the first pose.
+    pub head_m: Option<[f64; 3]>,
+    /// Heading of the view axis, rad, counter-clockwise from +x.
+    pub yaw_rad: f64,
+    /// Pitch of the view axis, rad, up positive.
+    pub pitch_rad: f64,
+    /// Age of the pose, s.
+    pub pose_age_secs: f64,
+    /// Tracked and worn.
+    pub tracked: bool,
+    /// The origin changed; a game master must confirm the floor mark (R15).
+    pub awaits_confirmation: bool,
+    /// r of the separation rule now, m.
+    pub separation_radius_m: f64,
+    /// Head axis to footprint, m.
+    pub distance_m: f64,
+    /// What the rule asks at the present speed, m: the sum of its terms.
+    pub required_m: f64,
+    /// The terms of that sum; null without a pose.
+    pub separation: Option<SeparationTerms>,
+    /// The column is slowed, turned aside or held because of this person.
+    pub limits_column: bool,
+}
+
+/// One object of the active scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct Object {
+    /// The scene's id.
+    pub id: String,
+    /// W, prior included.
+    pub weight: f64,
+    /// Share of the weight.
+    pub probability: f64,
+    /// The prior in force.
+    pub prior: f64,
+    /// Where the column's centre must stand.
+    pub column_place_m: [f64; 2],
+    /// Seconds until the column could be there.
+    pub arrival_secs: f64,
+    /// Seconds until the visitor could touch it; null without a visitor.
+    pub touch_secs: Option<f64>,
+    /// Between the visitor's view axis and it, rad; null without a visitor.
+    pub angle_rad: Option<f64>,
+    /// From the visitor's head to its surface, m; null without a visitor.
+    pub distance_m: Option<f64>,
+}
+
+/// The control loop's health.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct ControlLoop {
+    /// Nominal rate, Hz.
+    pub rate_hz: f64,
+    /// Steps begun.
+    #[ts(type = "number")]
+    pub steps: u64,
+    /// Steps begun more than one period late.
+    #[ts(type = "number")]
+    pub missed_deadlines: u64,
+    /// 99th percentile of lateness over the last 10 s, microseconds.
+    pub lateness_p99_micros: f64,
+    /// Greatest lateness over the last 10 s, microseconds.
+    pub lateness_max_micros: f64,
+    /// The scheduler and locked memory in force, in plain words.
+    pub scheduling: String,
+    /// The same as ids and their values.
+    pub scheduling_why: Vec<Reason>,
+}
+
+/// One VR client.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct Client {
+    /// The name of its hello.
+    pub name: String,
+    /// Its convention.
+    pub convention: String,
+    /// Poses accepted.
+    #[ts(type = "number")]
+    pub poses: u64,
+    /// Poses a second over the last second.
+    pub pose_rate_hz: f64,
+    /// Least round trip of the clock window, ms; null before the first.
+    pub rtt_millis: Option<f64>,
+    /// Ids of the persons that it speaks for.
+    pub persons: Vec<u32>,
+    /// Greatest age that a pose had when it was received, over the last second, ms; null without poses.
+    pub pose_age_millis: Option<f64>,
+    /// Interarrival jitter of its poses (RFC 3550, 6.4.1), ms; null before the second pose.
+    pub jitter_millis: Option<f64>,
+    /// Poses missing in their sequence over the last 10 s, percent; null without poses.
+    pub loss_percent: Option<f64>,
+    /// Messages refused.
+    #[ts(type = "number")]
+    pub errors: u64,
+}
+
+/// The state of the machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
+#[serde(rename_all = "snake_case")]
+pub enum Mode {
+    /// Drive released.
+    Disarmed,
+    /// Finding the switches.
+    Homing,
+    /// Homed and holding; serves nobody.
+    Ready,
+    /// Armed.
+    Following,
+    /// Braked; clears by itself.
+    ProtectiveStop,
+    /// Braked and released; needs a reset.
+    LatchedStop,
+    /// Machine or link cannot be trusted.
+    Faulted,
+}

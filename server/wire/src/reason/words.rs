@@ -1,0 +1,211 @@
+//! The English sentences.
+
+use std::fmt;
+
+use super::Reason;
+use crate::dashboard::Mode;
+
+impl fmt::Display for Reason {
+    /// The English sentence.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NothingToWatch => write!(f, "nothing to watch now"),
+            Self::NotWatched => write!(f, "not watched in this version"),
+            Self::InsideTravel => write!(f, "inside the travel"),
+            Self::PastTravel { past_m } => {
+                write!(f, "the column is {:.1} cm past its travel", past_m * 100.0)
+            }
+            Self::TravelEndInTheWay => write!(f, "slowed at the end of the travel"),
+            Self::HeadsetsTracked => write!(f, "everybody's headset is tracked"),
+            Self::ArenaEmpty => write!(f, "nobody is in the arena"),
+            Self::NoPoseYet { person, entered_secs } => {
+                write!(f, "{person} entered {entered_secs:.2} s ago and has sent no pose yet")
+            }
+            Self::PoseTooOld { person, age_secs } => {
+                write!(f, "the newest pose of {person} is {age_secs:.2} s old")
+            }
+            Self::HeadsetUntracked { person } => write!(f, "the headset of {person} does not know its place"),
+            Self::PoseJumped { person } => {
+                write!(f, "the pose of {person} jumped faster than a head can move")
+            }
+            Self::ClientGone { person } => write!(f, "the VR client of {person} is gone"),
+            Self::HeadsetOff { person } => write!(f, "{person} took the headset off"),
+            Self::OriginUnconfirmed { person } => {
+                write!(f, "{person} must be confirmed on the floor mark: the tracking origin changed")
+            }
+            Self::NobodyInTheWay => write!(f, "nobody in the way"),
+            Self::PersonInTheWay { person, distance_m, required_m } => write!(
+                f,
+                "slowed or turned for {person}: {distance_m:.2} m on the way, {required_m:.2} m needed"
+            ),
+            Self::NoKeepOutInTheWay => write!(f, "no keep-out shape in the way"),
+            Self::KeepOutInTheWay { keep_out, distance_m, required_m } => write!(
+                f,
+                "slowed or turned for the keep-out shape {keep_out}: {distance_m:.2} m on the way, {required_m:.2} m needed"
+            ),
+            Self::StopNotPressed => write!(f, "not pressed"),
+            Self::SoftwareStop { said: Some(said) } => write!(f, "software stop: {said}"),
+            Self::SoftwareStop { said: None } => write!(f, "software stop, no reason given"),
+            Self::LastRunLatched { rule: Some(rule), because: Some(because) } => {
+                write!(f, "the last run ended in a latched stop: {rule}: {because}")
+            }
+            Self::LastRunLatched { rule: Some(rule), because: None } => {
+                write!(f, "the last run ended in a latched stop: {rule}")
+            }
+            Self::LastRunLatched { .. } => write!(f, "the last run ended in a latched stop"),
+            Self::MotorCurrent { amps, limit_amps } => {
+                write!(f, "{amps:.1} A against a limit of {limit_amps:.1} A")
+            }
+            Self::BehindCommand { behind_m } => write!(f, "{:.1} cm behind the command", behind_m * 100.0),
+            Self::Astray => write!(f, "not where it was commanded to be: held until it rests"),
+            Self::AstrayAgain { times } => {
+                write!(f, "not where it was commanded to be, {times} times in a row")
+            }
+            Self::MovesAsCommanded => write!(f, "moves as commanded"),
+            Self::MovesOtherwise { difference_mps } => {
+                write!(f, "moves {difference_mps:.2} m/s otherwise than commanded")
+            }
+            Self::DoesNotMove => write!(f, "commanded and does not move"),
+            Self::NoSwitchFound => write!(f, "homing found no switch"),
+            Self::HomeLost => write!(f, "the machine has lost its home"),
+            Self::NoAnswerYet => write!(f, "the machine has not answered yet"),
+            Self::NoGoodAnswer { silent_millis } => write!(f, "no good answer for {silent_millis} ms"),
+            Self::ControllerAnswers => write!(f, "the controller answers"),
+            Self::StepsInTime => write!(f, "control steps begin in time"),
+            Self::StepsLate { steps } => write!(f, "{steps} control steps in a row began late"),
+            Self::ArenaAccountedFor => write!(f, "people are tracked, or the arena was confirmed clear"),
+            Self::ArenaUnconfirmed => write!(
+                f,
+                "nobody is tracked and nobody has confirmed that the arena is clear: no motion by itself"
+            ),
+            Self::Asked { request } => write!(f, "{request}"),
+            Self::ResetAsked { said } => write!(f, "reset: {said}"),
+            Self::HomingDone => write!(f, "homed"),
+            Self::ProtectiveStopOver => write!(f, "the cause of the protective stop is gone"),
+            Self::NowIn { mode } => write!(f, "now {}", in_words(*mode)),
+            Self::Stopped => write!(f, "stopped"),
+            Self::StoppedAlready => write!(f, "stopped already; the stop is latched"),
+            Self::HomingAlready => write!(f, "homing already"),
+            Self::DisarmFirst => write!(f, "the machine is armed: disarm first"),
+            Self::ResetFirst => write!(f, "the machine is stopped: reset first"),
+            Self::HomeFirst => write!(f, "not homed: home first"),
+            Self::WaitForHoming => write!(f, "homing: wait until it is done"),
+            Self::WaitForRest => write!(f, "the column still moves: wait until it rests"),
+            Self::ArmedAlready => write!(f, "armed already"),
+            Self::ArmedInProtectiveStop => write!(f, "armed already; the protective stop clears by itself"),
+            Self::DisarmedAlready => write!(f, "disarmed already"),
+            Self::ReleasedAlready => write!(f, "the drive is released already; leave the stop by reset"),
+            Self::CauseStillThere { rule, because } => {
+                write!(f, "the cause is still there: {rule}: {because}")
+            }
+            Self::ClearsByItself => write!(f, "a protective stop clears by itself when its cause is gone"),
+            Self::NothingToReset => write!(f, "nothing to reset"),
+            Self::ResetNeedsReason => write!(f, "a reset needs a reason"),
+            Self::HomingNearKeepOut { keep_out, required_m } => {
+                write!(f, "homing would come within {required_m:.2} m of the keep-out shape {keep_out}")
+            }
+            Self::PersonNotInside { person } => write!(f, "{person} is not in the arena"),
+            Self::OriginConfirmedAlready { person } => {
+                write!(f, "{person} is confirmed on the floor mark already")
+            }
+            Self::OriginConfirmed { person } => write!(f, "{person} is confirmed on the floor mark"),
+            Self::PersonStillTracked { person } => {
+                write!(f, "the headset of {person} is tracked: they are in the arena")
+            }
+            Self::PersonLeft { person } => write!(f, "{person} has left"),
+            Self::NoSuchObject { index, objects } => write!(f, "object {index} of {objects} objects"),
+            Self::PriorOutOfRange { index, prior } => {
+                write!(f, "prior {prior:.2} of object {index}: expected 0 to 1")
+            }
+            Self::PriorsSet { count } => write!(f, "{count} priors set"),
+            Self::ColumnInKeepOut { keep_out, required_m } => write!(
+                f,
+                "the column stands within {required_m:.2} m of the keep-out shape {keep_out}: move it away first"
+            ),
+            Self::SceneActivated => write!(f, "the scene is active"),
+            Self::Busy => write!(f, "busy: the control loop's queue is full; try again"),
+            Self::ControlNotRunning => write!(f, "the control loop is not running"),
+            Self::DriveSilent { within_millis } => {
+                write!(f, "no acknowledgement from the drive within {within_millis} ms; use the wired stop")
+            }
+            Self::DatabaseSilent => write!(f, "the database did not answer; the server's log says why"),
+            Self::PreviewUnfinished => write!(f, "the preview was not finished"),
+            Self::NoScene { scene } => write!(f, "there is no scene {scene}"),
+            Self::NoSceneVersion { scene, version } => {
+                write!(f, "there is no version {version} of scene {scene}")
+            }
+            Self::NoSession { session } => write!(f, "there is no session \"{session}\""),
+            Self::DriveReleased => write!(f, "the drive is released"),
+            Self::LooksForSwitches => write!(f, "looks for its switches at creep speed"),
+            Self::HoldsUnarmed => write!(f, "homed and holding; it follows nobody until it is armed"),
+            Self::StoppedBy { rule } => write!(f, "stopped by {rule}"),
+            Self::WaitsForPose { person } => write!(f, "holds until {person} sends a first pose"),
+            Self::NoHeadsetTracked => write!(f, "nobody's headset is tracked"),
+            Self::EveryPriorZero => write!(f, "no enabled object has a weight: every prior is 0"),
+            Self::Serves { person: Some(person), object, weight, .. } => {
+                write!(f, "for {person}, {object}: weight {weight:.2}")
+            }
+            Self::Serves { person: None, object, weight, .. } => write!(f, "{object}: weight {weight:.2}"),
+            Self::NextInLine { object, weight, .. } => write!(f, "next {object} {weight:.2}"),
+            Self::Undecided { person, object, weight, other, other_weight } => {
+                if let Some(person) = person {
+                    write!(f, "for {person}, ")?;
+                }
+                write!(f, "undecided between {object} {weight:.2} and {other} {other_weight:.2}")
+            }
+            Self::NoObject => write!(f, "no object"),
+            Self::ToGo { left_m, speed_mps } => write!(f, "{left_m:.2} m to go at {speed_mps:.2} m/s"),
+            Self::HeldShort { left_m } => write!(f, "held {left_m:.2} m short"),
+            Self::GoesAround => write!(f, "around somebody in the way"),
+            Self::StandsThere => write!(f, "stands there"),
+            Self::LooksAt { person, object, angle_rad, distance_m } => {
+                let degrees = angle_rad.to_degrees();
+                if degrees < 0.5 {
+                    write!(f, "{person} looks at {object}, {distance_m:.2} m away")
+                } else {
+                    write!(f, "{person} looks {degrees:.0}° beside {object}, {distance_m:.2} m away")
+                }
+            }
+            Self::NonePlain { person, probability } => {
+                write!(f, "most likely none of them ({:.0} %): {person} looks around", probability * 100.0)
+            }
+            Self::AtObject { object, probability } => {
+                write!(f, "at {object}, the most probable ({:.0} %)", probability * 100.0)
+            }
+            Self::AtAnother { object } => write!(f, "at {object}: from there more can be reached in time"),
+            Self::Between { object, other } => {
+                write!(f, "between {object} and {other}: from there either can be reached in time")
+            }
+            Self::AtMean => write!(f, "the mean of the objects' places, weighted by the belief"),
+            Self::AmongObjects => write!(f, "among several objects: from there most can be reached in time"),
+            Self::StraightOn => write!(f, "straight, nobody in the way"),
+            Self::AtItsLimits => write!(f, "as soon as its limits allow"),
+            Self::PeopleCost { secs } => write!(f, "people on the way and a soft start cost {secs:.1} s"),
+            Self::NotForeseen => write!(f, "later than it plans ahead"),
+            Self::RealTimeNotAsked => {
+                write!(f, "normal scheduling, memory not locked (control.real_time is false)")
+            }
+            Self::RealTime { priority } => write!(f, "SCHED_FIFO priority {priority}"),
+            Self::RealTimeRefused { said } => {
+                write!(f, "normal scheduling (SCHED_FIFO not permitted: {said})")
+            }
+            Self::MemoryLocked => write!(f, "memory locked"),
+            Self::MemoryLockedForNow => {
+                write!(f, "present memory locked, future memory not (RLIMIT_MEMLOCK is limited)")
+            }
+            Self::MemoryNotLocked { said } => write!(f, "memory not locked ({said})"),
+        }
+    }
+}
+
+fn in_words(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Disarmed => "disarmed",
+        Mode::Homing => "homing",
+        Mode::Ready => "ready",
+        Mode::Following => "following",
+        Mode::ProtectiveStop => "protective stop",
+        Mode::LatchedStop => "latched stop",
+        Mode::Faulted => "faulted",
+    }
+}

@@ -1,0 +1,23 @@
+/** What the catalogues of reasons must have: a sentence for each id that the server may send. */
+import type { Mode, Reason } from "../api/types";
+
+/** How the values of a reason read in the page's language. */
+export interface Sayings {
+  /** A number with so many digits after the decimal sign. */
+  readonly number: (value: number, digits: number) => string;
+  /** An object's label, by its id. */
+  readonly object: (id: string) => string;
+  readonly mode: (mode: Mode) => string;
+  /** A request: `home`, `arm`, ... */
+  readonly request: (name: string) => string;
+  /** A reason inside a reason. */
+  readonly reason: (reason: Reason) => string;
+}
+
+/** One sentence for each reason; a missing one does not compile. */
+export type ReasonSentences = {
+  readonly [Id in Reason["id"]]: (given: Extract<Reason, { readonly id: Id }>, say: Sayings) => string;
+};
+
+/** Half a degree, which reads as 0°: somebody looks at what is nearer than this to their view axis, rad. */
+export const AT_RAD = Math.PI / 360;
