@@ -58,6 +58,8 @@ pub struct Following {
     proxy: Proxy,
     proposals: Proposals,
     planner: Planner,
+    /// It would be late in the middle of what it makes for.
+    stops_short: bool,
     walkers: Vec<Walker>,
     chances: Vec<Chance>,
     conflict: Option<Conflict>,
@@ -88,6 +90,7 @@ impl Following {
             proxy: Proxy::at(Floor::new(0.0, 0.0)),
             proposals: Proposals::default(),
             planner: Planner::default(),
+            stops_short: false,
             walkers: Vec::new(),
             chances: Vec::new(),
             conflict: None,
@@ -236,11 +239,13 @@ impl Following {
                 // With the separation rule left out there is nobody to be led around either.
                 walkers: if separation.threats.is_empty() { &[] } else { &self.walkers },
             };
-            let in_time = |secs: f64| self.planner.arrival_secs() + STILL_BEFORE_TOUCH_SECS < secs;
-            // The hand will be there before the column: nearly there and still serves, nearly there and moving does not.
-            let too_late = wish.and_then(|w| w.touch_secs).is_some_and(|secs| !in_time(secs));
+            // A hand that meets a moving column is not served: rather than be late in the middle it stops short. Once it
+            // does, it makes for the middle again only with time to spare.
+            let spare_secs = wish.and_then(|w| w.touch_secs).map(|touch| touch - self.planner.arrival_secs());
+            let needs_secs = STILL_BEFORE_TOUCH_SECS + if self.stops_short { SPARE_SECS } else { 0.0 };
+            self.stops_short = spare_secs.is_some_and(|spare| spare <= needs_secs);
             let errand = Errand {
-                target: if too_late { nearly(here, target) } else { target },
+                target: if self.stops_short { nearly(here, target) } else { target },
                 speed_cap_mps: soft_start_mps,
                 inside,
                 elapsed_secs: period.secs(),
@@ -406,10 +411,12 @@ const LEAST_CHANCE: f64 = 0.01;
 const MOST_CHANCES: usize = 6;
 /// A prop that a hand meets has stood still for so long, s.
 const STILL_BEFORE_TOUCH_SECS: f64 = 0.4;
+/// So much more time makes it go for the middle again, s.
+const SPARE_SECS: f64 = 0.1;
 /// Nearer than this, and still, it serves: inside what the evaluation asks, m.
-const NEARLY_M: f64 = 0.085;
+const NEARLY_M: f64 = 0.07;
 /// So far short of the target it comes to rest when it would be late there, m.
-const SHORT_M: f64 = 0.07;
+const SHORT_M: f64 = 0.05;
 /// A visitor who is served keeps being served against one who is this much stronger.
 const CONSTANCY: f64 = 0.1;
 const CONE_LARGE_M: f64 = 0.45;

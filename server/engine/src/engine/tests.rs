@@ -337,7 +337,7 @@ fn over_current_and_a_straying_machine_latch() {
     let mut room = Room::armed();
     room.enter(2.0, 3.5, 0.0);
     room.run(0.5);
-    for _ in 0..60 {
+    for _ in 0..250 {
         let stuck = room.report.position;
         room.step();
         room.report.position = Floor::new(stuck.x.min(0.5), stuck.y.min(0.5));

@@ -39,6 +39,8 @@ pub struct Parameters {
     /// R6: farther than this from the command the column is held until it rests, m: half of the allowance, as it comes
     /// to rest farther on.
     pub astray_m: f64,
+    /// R6: but it may come along behind the command by this long.
+    pub astray_lag: Span,
     /// R6: and so it is when its velocity differs by more than this, m/s.
     pub astray_mps: f64,
     /// R6: so often within [`Self::astray_within`] is a breach.
@@ -89,6 +91,7 @@ impl Parameters {
             retreat_cone_rad: 12.0_f64.to_radians(),
             following_allowance_m: 0.012,
             astray_m: 0.006,
+            astray_lag: Span::from_millis(20),
             astray_mps: 0.1,
             astray_times: 3,
             astray_within: Span::from_millis(2_000),

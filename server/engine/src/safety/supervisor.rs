@@ -352,11 +352,16 @@ pub fn demand(rule: RuleId) -> Option<Demand> {
     }
 }
 
-/// Whether the machine left what certificates allow it beside the command, when it was measured.
+/// Whether the machine left what certificates allow it beside the command, when it was measured. One that comes along
+/// a little behind is inside the reaction that they allow for.
 fn is_astray(commanded: &State, report: &MachineReport, commanded_at: Time, p: &Parameters) -> bool {
     let velocity = commanded.velocity();
     let expected = commanded.position() + velocity * (report.answered_at - commanded_at).secs();
-    expected.distance_m(report.position) > p.astray_m || (report.velocity - velocity).norm() > p.astray_mps
+    let behind = expected - report.position;
+    let behind_secs =
+        (behind.dot(velocity) / velocity.dot(velocity).max(1e-9)).clamp(0.0, p.astray_lag.secs());
+    (behind - velocity * behind_secs).norm() > p.astray_m
+        || (report.velocity - velocity).norm() > p.astray_mps
 }
 
 fn breach_if(breached: bool) -> RuleStatus {
