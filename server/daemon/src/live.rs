@@ -90,7 +90,7 @@ pub async fn publish(app: Arc<App>, frames: watch::Sender<Arc<str>>) {
 }
 
 /// What looking ahead may take of a core: dashboards are promised 5 % in all.
-const MOST_OF_A_CORE: f64 = 0.03;
+const MOST_OF_A_CORE: f64 = 0.02;
 
 /// Metrics, at most four times a second.
 struct Meter {

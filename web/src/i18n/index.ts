@@ -1,6 +1,7 @@
 /**
  * The page's words. Each area of the page has one catalogue per language; French has the same keys as English, or it
- * does not compile. Words that the server says (reasons, summaries) are English and are marked so where they are shown.
+ * does not compile. What the server says comes as an id with values and is said here; what the page does not
+ * know by its id is shown in the server's English, and marked so.
  */
 import { createSignal } from "solid-js";
 import * as en from "./en";

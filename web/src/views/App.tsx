@@ -1,5 +1,5 @@
 /** The page: stop, mode and banners on every view; which view by the address's hash. */
-import { createEffect, createSignal, ErrorBoundary, lazy, Match, onCleanup, onMount, Show, Suspense, Switch, type JSX } from "solid-js";
+import { createEffect, createSignal, Match, Show, Switch, type JSX } from "solid-js";
 import { words } from "../i18n";
 import { createAppearance } from "../lib/appearance";
 import { readAuthor, writeAuthor } from "../lib/author";
@@ -17,6 +17,9 @@ import { Tour } from "../ui/Tour";
 import { HelpView } from "./HelpView";
 import { LiveView } from "./LiveView";
 import { createRoute } from "./route";
+import { ScenesView } from "./ScenesView";
+import { SessionsView } from "./SessionsView";
+import { SettingsView } from "./SettingsView";
 import { createUpload } from "./upload";
 
 /** The whole dashboard. */
@@ -53,15 +56,6 @@ export function App(): JSX.Element {
   };
   const usesShortcuts = (): boolean => store.preferences().shortcuts !== false;
   listenForShortcuts(usesShortcuts, () => (listed() ? KEYS_OF_THE_LIST : null));
-  onMount(() => {
-    // The desk comes first. The other views follow, so that they are there when the server is not.
-    const timer = setTimeout(() => {
-      for (const view of LATER) void view.preload().catch(() => undefined);
-    }, LATER_MILLIS);
-    onCleanup(() => {
-      clearTimeout(timer);
-    });
-  });
   createEffect(() => {
     document.title = `${words().shell.pages[route().view]} · CoVR`;
   });
@@ -85,33 +79,29 @@ export function App(): JSX.Element {
         </p>
       </div>
       <main inert={listed()}>
-        <ErrorBoundary fallback={<Unloaded />}>
-          <Suspense fallback={<p class="empty" role="status">{words().shell.loading}</p>}>
-            <Switch>
-              <Match when={route().view === "live"}>
-                <LiveView live={live} author={author()} preferences={store} />
-              </Match>
-              <Match when={route().view === "scenes"}>
-                <ScenesView live={live} upload={upload} author={author()} />
-              </Match>
-              <Match when={route().view === "sessions"}>
-                <SessionsView live={live} />
-              </Match>
-              <Match when={route().view === "settings"}>
-                <SettingsView
-                  live={live}
-                  author={author()}
-                  setAuthor={keepAuthor}
-                  preferences={store}
-                  showShortcuts={() => setListed(true)}
-                />
-              </Match>
-              <Match when={route().view === "help"}>
-                <HelpView live={live} at={route().rest} showTour={showTour} showShortcuts={() => setListed(true)} />
-              </Match>
-            </Switch>
-          </Suspense>
-        </ErrorBoundary>
+        <Switch>
+          <Match when={route().view === "live"}>
+            <LiveView live={live} author={author()} preferences={store} />
+          </Match>
+          <Match when={route().view === "scenes"}>
+            <ScenesView live={live} upload={upload} author={author()} />
+          </Match>
+          <Match when={route().view === "sessions"}>
+            <SessionsView live={live} />
+          </Match>
+          <Match when={route().view === "settings"}>
+            <SettingsView
+              live={live}
+              author={author()}
+              setAuthor={keepAuthor}
+              preferences={store}
+              showShortcuts={() => setListed(true)}
+            />
+          </Match>
+          <Match when={route().view === "help"}>
+            <HelpView live={live} at={route().rest} showTour={showTour} showShortcuts={() => setListed(true)} />
+          </Match>
+        </Switch>
       </main>
       <Strip live={live} />
       <Show when={listed()}>
@@ -135,22 +125,3 @@ export function App(): JSX.Element {
     </div>
   );
 }
-
-/** A view whose script did not come, in its place; the stop stays where it is. */
-function Unloaded(): JSX.Element {
-  return (
-    <div class="sheet">
-      <p class="answer refused" role="alert" data-testid="view-unloaded">
-        {words().shell.unloaded}{" "}
-        <button type="button" onClick={() => { location.reload(); }}>{words().shell.reload}</button>
-      </p>
-    </div>
-  );
-}
-
-const ScenesView = lazy(async () => ({ default: (await import("./ScenesView")).ScenesView }));
-const SessionsView = lazy(async () => ({ default: (await import("./SessionsView")).SessionsView }));
-const SettingsView = lazy(async () => ({ default: (await import("./SettingsView")).SettingsView }));
-const LATER = [ScenesView, SessionsView, SettingsView] as const;
-/** The desk is long live by then, ms. */
-const LATER_MILLIS = 3000;

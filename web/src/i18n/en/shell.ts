@@ -4,9 +4,6 @@ export const shell = {
   author: { label: "you are", title: "Your name", means: "Your name, as the records of priors and scenes name you" },
   theme: { label: "Theme", dark: "Dark", light: "Light", system: "As the system", change: "Theme: switch between dark and light" },
   language: { label: "Language", change: "Language: English or French" },
-  loading: "Loading…",
-  unloaded: "This view could not be loaded. Mode and stop above go on working.",
-  reload: "Load the page again",
   shortcutsButton: "Keyboard shortcuts",
   dropHint: "Drop the scene’s JSON file to upload it",
   modes: {

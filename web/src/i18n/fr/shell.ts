@@ -4,9 +4,6 @@ export const shell = {
   author: { label: "vous êtes", title: "Votre nom", means: "Votre nom, tel qu’il figure dans l’historique des a priori et des scènes" },
   theme: { label: "Thème", dark: "Sombre", light: "Clair", system: "Comme le système", change: "Thème : passer du sombre au clair" },
   language: { label: "Langue", change: "Langue : anglais ou français" },
-  loading: "Chargement…",
-  unloaded: "Cette vue n’a pas pu être chargée. L’état et l’arrêt ci-dessus continuent de fonctionner.",
-  reload: "Recharger la page",
   shortcutsButton: "Raccourcis clavier",
   dropHint: "Déposez le fichier JSON de la scène pour l’envoyer",
   modes: {
