@@ -9,7 +9,7 @@ use covr_study::prove::{Campaign, Case, prove, run};
 /// A quarter of the million steps.
 fn quarter(seed: u64) {
     let campaign = Campaign { steps: 252_000, seed, v_h_mps: None, without: Vec::new(), threads: 1 };
-    let findings = prove(&campaign, &|_| ()).unwrap();
+    let findings = prove(&campaign, &|_| ()).expect("every world can be brought up");
     eprintln!("{findings}");
     assert_eq!(findings.violations, 0, "{findings}");
     let share = findings.moving_ticks as f64 / findings.steps as f64;

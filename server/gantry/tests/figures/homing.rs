@@ -67,7 +67,7 @@ fn while_it_homes_anew_its_place_is_still_known() {
         })
     };
     for k in 0..500 {
-        course.step(setpoint(0.05 + f64::from(k) * 0.002));
+        course.step(setpoint(0.05 + f64::from(k) * 0.002)).0.unwrap();
     }
     let mut running = 0;
     for _ in 0..500 {
