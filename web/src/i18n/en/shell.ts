@@ -144,7 +144,7 @@ export const shell = {
     noClient: "no VR client",
     refused: (count: number) => `${count} refused`,
     loop: (rate: string, p99: string, greatest: string, missed: number, steps: number) =>
-      `loop ${rate} Hz, late p99 ${p99}, greatest ${greatest}, ${missed} missed of ${steps};`,
+      `loop ${rate} Hz, late p99 ${p99}, greatest ${greatest}, ${missed} missed of ${steps}`,
     notUnderstood: (last: string, count: number) => `not understood: ${last} (${count})`,
   },
   shortcuts: {

@@ -144,7 +144,7 @@ export const shell = {
     noClient: "aucun client VR",
     refused: (count: number) => (count === 1 ? "1 refusé" : `${count} refusés`),
     loop: (rate: string, p99: string, greatest: string, missed: number, steps: number) =>
-      `boucle ${rate} Hz, retard p99 ${p99}, maximum ${greatest}, ${missed} manqués sur ${steps} ;`,
+      `boucle ${rate} Hz, retard p99 ${p99}, maximum ${greatest}, ${missed} manqués sur ${steps}`,
     notUnderstood: (last: string, count: number) => `non compris : ${last} (${count})`,
   },
   shortcuts: {
