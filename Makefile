@@ -15,7 +15,7 @@ export COVR_PYTHON ?= $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/python/bin/pyth
 # Where `make run` listens.
 BIND ?= 127.0.0.1:7878
 
-.PHONY: help run test bench setup build fmt check-format clippy test-rust test-web test-e2e
+.PHONY: help run test bench prove setup build fmt check-format clippy test-rust test-web test-e2e
 
 help: ## This list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -28,6 +28,10 @@ test: setup check-format clippy test-rust test-web test-e2e ## Everything: forma
 bench: ## Every figure that the server promises, into server/BENCHMARKS.md; BENCH="--only stop" or --quick for less
 	cargo build --locked --release --package covr-server
 	cargo bench --locked --profile release --package covr-tests --bench figures -- --out $(CURDIR)/server/BENCHMARKS.md $(BENCH)
+
+prove: ## Ten million steps against people at their worst; STEPS=100000000 SEED=2 for more and others
+	cargo build --locked --release --package covr-server
+	$(or $(CARGO_TARGET_DIR),target)/release/covr prove --steps $(or $(STEPS),10000000) --seed $(or $(SEED),1)
 
 setup: ## Install what the tests need and this machine lacks
 	tests/setup
