@@ -149,3 +149,23 @@ fn the_server_never_says_that_everything_is_simulated() {
         }
     }
 }
+
+#[test]
+fn every_test_that_the_hazard_table_names_is_there() {
+    let table = std::fs::read_to_string(top().join("server/SAFETY.md")).expect("the hazard table");
+    let mut code = sources(&top().join("server"));
+    code.extend(sources(&top().join("tests")));
+    let is_there = |name: &str| code.iter().any(|(_, text)| text.contains(&format!("fn {name}(")));
+    let rows = table.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| hazard"));
+    let mut count = 0;
+    for row in rows {
+        let shown_by = row.split(" | ").nth(4).unwrap_or_else(|| panic!("five columns: {row}"));
+        let names: Vec<&str> = shown_by.split('`').skip(1).step_by(2).collect();
+        assert!(!names.is_empty(), "a hazard without a test: {row}");
+        for name in names {
+            assert!(is_there(name), "SAFETY.md names the test {name}, which is not there");
+            count += 1;
+        }
+    }
+    assert!(count > 30, "{count} tests named");
+}
