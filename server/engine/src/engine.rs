@@ -181,11 +181,14 @@ impl Engine {
             Mode::Homing if self.may_home() => Vetted::home(now),
             Mode::Homing => Vetted::hold(now),
             Mode::ProtectiveStop if self.resumes == Mode::Homing => Vetted::hold(now),
+            // Nobody takes over a machine that moves.
+            Mode::Ready | Mode::Following | Mode::ProtectiveStop
+                if self.governor.is_none() && !self.rests(now) =>
+            {
+                Vetted::hold(now)
+            }
             Mode::Ready | Mode::Following | Mode::ProtectiveStop => {
-                let rests = self.rests(now);
-                let Some(report) = self.report.filter(|_| rests || self.governor.is_some()) else {
-                    return Vetted::hold(now);
-                };
+                let Some(report) = self.report else { return Vetted::hold(now) };
                 let governor = self.governor.get_or_insert_with(|| Governor::taking_over(report.position));
                 let separation = Separation {
                     scene: &self.scene,

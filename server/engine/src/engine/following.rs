@@ -280,6 +280,7 @@ impl Following {
     /// The column is not following: the ball lies where it stands.
     pub fn rest_at(&mut self, column: Floor) {
         self.proxy = Proxy::at(column);
+        self.stops_short = false;
         self.conflict = None;
         self.last_conflict = None;
         self.goes_around = false;

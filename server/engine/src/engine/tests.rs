@@ -337,11 +337,15 @@ fn over_current_and_a_straying_machine_latch() {
     let mut room = Room::armed();
     room.enter(2.0, 3.5, 0.0);
     room.run(0.5);
-    for _ in 0..250 {
+    let mut held_after = None;
+    for step in 0..250 {
         let stuck = room.report.position;
-        room.step();
+        if room.step().action() == Action::Hold {
+            held_after = held_after.or(Some(step));
+        }
         room.report.position = Floor::new(stuck.x.min(0.5), stuck.y.min(0.5));
     }
+    assert!(held_after.is_some_and(|step| step < 60), "held after {held_after:?} steps");
     let rule = room.engine.snapshot(room.now).stop.unwrap().rule;
     assert!(rule == RuleId(6) || rule == RuleId(7), "{rule:?}");
 }
