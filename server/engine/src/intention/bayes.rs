@@ -174,14 +174,13 @@ impl Rule for Bayes {
             let fades = (-dt / p.now_secs).exp();
             let looks = elevation_and_level(&ahead);
             for (i, probability) in self.probabilities.iter_mut().enumerate() {
-                let off = view.sights.get(i).map_or_else(
-                    || Off::NONE_OF_THEM * p.none_angle_rad,
-                    |sight| Off::of(sight, &ahead, looks, view.velocity),
-                );
-                let nearness = view.sights.get(i).map_or(0.0, |sight| p.nearness_rate * sight.distance_m);
+                let (off, distance_m) = match view.sights.get(i) {
+                    Some(sight) => (Off::of(sight, &ahead, looks, view.velocity), sight.distance_m),
+                    None => (Off::NONE_OF_THEM * p.none_angle_rad, 0.0),
+                };
                 let way = off.way.min(p.way_cap_rad);
-                let evidence =
-                    -gaze_rate * off.gaze.min(p.gaze_cap_rad) - walks * (p.way_rate * way + nearness);
+                let evidence = -gaze_rate * off.gaze.min(p.gaze_cap_rad)
+                    - walks * (p.way_rate * way + p.nearness_rate * distance_m);
                 let stayed = stay * *probability + (1.0 - stay) * self.priors[i];
                 *probability = stayed * (dt * evidence).exp();
                 let just_now = p.now_heading_rate * off.heading.min(p.gaze_cap_rad)
