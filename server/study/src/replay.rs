@@ -42,7 +42,6 @@ pub struct ClosedLoop {
     now: Time,
     persons: Vec<PersonNow>,
     missed: bool,
-    last: Option<Vetted>,
 }
 
 /// A person's head as it really is now.
@@ -89,7 +88,6 @@ impl ClosedLoop {
             now: start,
             persons: Vec::new(),
             missed: false,
-            last: None,
         }
     }
 
@@ -139,20 +137,18 @@ impl ClosedLoop {
         // A command that the machine does not take is the machine's to report; its dead-man brakes.
         let taken = self.machine.write(at, &command).is_ok();
         let stepped = Stepped { at, report, command, truth: self.machine.truth() };
-        self.last = Some(command);
-        self.check(&stepped, Some(taken), heads);
+        // What is not taken is braked for.
+        let told = if taken { command.action() } else { Action::Hold };
+        self.check(&stepped.report, stepped.truth, Some(told), heads);
         self.now += self.engine.config().period;
         stepped
     }
 
     /// One control period in which the control thread does not get its turn: the machine goes by what it was told last.
     pub fn miss_step(&mut self, heads: &[TrueHead]) -> Truth {
-        let at = self.now;
-        let report = self.machine.read(at).report;
+        let report = self.machine.read(self.now).report;
         let truth = self.machine.truth();
-        if let Some(command) = self.last {
-            self.check(&Stepped { at, report, command, truth }, None, heads);
-        }
+        self.check(&report, truth, None, heads);
         self.missed = true;
         self.now += self.engine.config().period;
         truth
@@ -218,8 +214,8 @@ impl ClosedLoop {
         self.checkers.each_mut().map(Checker::take_verdict)
     }
 
-    /// `taken`: whether the machine took the command; none when nothing was commanded, and nothing of it is to be checked.
-    fn check(&mut self, stepped: &Stepped, taken: Option<bool>, heads: &[TrueHead]) {
+    /// `told`: what the machine goes by from now on; none when it was told nothing in this period.
+    fn check(&mut self, report: &MachineReport, truth: Truth, told: Option<Action>, heads: &[TrueHead]) {
         let scene = self.engine.scene();
         self.persons.clear();
         self.persons.extend(heads.iter().map(|head| {
@@ -232,24 +228,24 @@ impl ClosedLoop {
                 contact_armed: false,
             }
         }));
-        let truly = Motion { position: stepped.truth.position, velocity: stepped.truth.velocity };
-        let (commanded, follows_setpoints) = match stepped.command.action() {
-            Action::Track(setpoint) if taken == Some(true) => {
+        let truly = Motion { position: truth.position, velocity: truth.velocity };
+        let (commanded, follows_setpoints) = match told {
+            Some(Action::Track(setpoint)) => {
                 (Motion { position: setpoint.position, velocity: setpoint.velocity }, true)
             }
             _ => (truly, false),
         };
         let moment = Moment {
-            at: stepped.at,
+            at: self.now,
             column: truly,
             follows_setpoints,
-            homed: stepped.report.homing == Homing::Homed,
+            homed: report.homing == Homing::Homed,
             latched: matches!(self.engine.mode(), Mode::LatchedStop | Mode::Faulted),
             persons: &self.persons,
         };
         let [of_truth, of_commands] = &mut self.checkers;
         of_truth.check(&moment);
-        if taken.is_some() {
+        if told.is_some() {
             of_commands.check(&Moment { column: commanded, ..moment });
         }
     }

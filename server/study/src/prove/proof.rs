@@ -36,7 +36,7 @@ pub enum Part {
     Person(usize),
     /// What the operator does beyond getting the machine going again.
     Operator,
-    /// Faults of link, axes and control thread.
+    /// Faults of the link to the machine and of the control thread.
     Faults,
 }
 
@@ -80,11 +80,13 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
         return Err(format!("seed {}: the machine stuck in {}: {told}", case.seed, mode.name()));
     }
     let now = control.now();
-    let mut everybody: Vec<Adversary> =
-        (0..1 + random.below(3)).map(|i| Adversary::new(&mut random, i as u32, world.arena, now)).collect();
-    let people = everybody.len();
-    let mut order = 0..people;
-    everybody.retain(|_| order.next().is_none_or(|i| !is_left_out(Part::Person(i))));
+    let people = 1 + random.below(3);
+    // Everybody is drawn, so that the rest of the world is the same without one of them.
+    let mut everybody: Vec<Adversary> = (0..people)
+        .map(|i| (i, Adversary::new(&mut random, i as u32, world.arena, now)))
+        .filter(|(i, _)| !is_left_out(Part::Person(*i)))
+        .map(|(_, person)| person)
+        .collect();
     let mut operator =
         Operator::new(random.fork(), std::mem::take(&mut world.scenes), now, !is_left_out(Part::Operator));
     let mut nuisance = if is_left_out(Part::Faults) { None } else { Some(Nuisance::new(random.fork(), now)) };
