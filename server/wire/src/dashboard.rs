@@ -4,14 +4,16 @@
 //! (a slow reader skips generations), every `event`, and an `answer` to each request. Nothing is ever patched.
 
 mod convert;
+mod event;
 mod snapshot;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
-pub use convert::{Surroundings, request_name, rule_title};
+pub use convert::{Surroundings, request_name};
 pub(crate) use convert::{clears_when, name_of};
+pub use event::rule_title;
 pub use snapshot::{
     Activity, Client, Column, ControlLoop, Decision, Mode, Object, Person, RequestState, RuleState,
     RuleStatus, SeparationTerm, SeparationTerms, Snapshot, StopCause,

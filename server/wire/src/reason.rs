@@ -14,6 +14,7 @@ use ts_rs::TS;
 
 pub use decision::decision;
 pub use latched::{last_run, latch_record};
+pub(crate) use words::in_words;
 
 use crate::dashboard::Mode;
 

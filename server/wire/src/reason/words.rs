@@ -198,7 +198,8 @@ impl fmt::Display for Reason {
     }
 }
 
-fn in_words(mode: Mode) -> &'static str {
+/// A mode as people say it.
+pub(crate) fn in_words(mode: Mode) -> &'static str {
     match mode {
         Mode::Disarmed => "disarmed",
         Mode::Homing => "homing",

@@ -1,0 +1,132 @@
+//! From the engine's events to the dashboard's, with the names of the rules.
+
+use std::collections::BTreeMap;
+
+use covr_engine::event::{Event as EngineEvent, EventKind};
+use covr_engine::observation::PersonId;
+use covr_engine::snapshot::RuleId;
+use serde_json::json;
+
+use super::{Event, name_of};
+use crate::reason::{Reason, in_words};
+
+impl Event {
+    /// The engine's event, with the wall clock (RFC 3339) and the names of persons and objects at that moment.
+    pub fn new(
+        event: &EngineEvent,
+        at: String,
+        names: &BTreeMap<PersonId, String>,
+        objects: &[String],
+    ) -> Self {
+        let who = |person: &PersonId| name_of(*person, names);
+        let (kind, summary, detail) = match &event.kind {
+            EventKind::ModeChanged { from, to, rule, because } => {
+                let why = Reason::new(because, names);
+                let because = rule.map_or_else(|| why.to_string(), |rule| format!("{}: {why}", rule.name()));
+                (
+                    "mode_changed",
+                    format!("{} to {}: {because}", in_words((*from).into()), in_words((*to).into())),
+                    json!({"from": from.name(), "to": to.name(), "rule": rule.map(RuleId::name), "because": because, "why": why}),
+                )
+            }
+            EventKind::RuleBreached { rule, reason } => {
+                let why = Reason::new(reason, names);
+                (
+                    "rule_breached",
+                    format!("{} {}: {why}", rule.name(), rule_title(*rule)),
+                    json!({"rule": rule.name(), "title": rule_title(*rule), "reason": why.to_string(), "why": why}),
+                )
+            }
+            EventKind::RuleCleared { rule } => (
+                "rule_cleared",
+                format!("{} {} is kept again", rule.name(), rule_title(*rule)),
+                json!({"rule": rule.name(), "title": rule_title(*rule)}),
+            ),
+            EventKind::PersonEntered(person) => (
+                "person_entered",
+                format!("{} entered", who(person)),
+                json!({"person": person.0, "name": who(person)}),
+            ),
+            EventKind::PersonLeft(person) => (
+                "person_left",
+                format!("{} left", who(person)),
+                json!({"person": person.0, "name": who(person)}),
+            ),
+            EventKind::Served { person, object } => {
+                let id = objects.get(*object);
+                let object_name = id.map_or_else(|| format!("object {object}"), Clone::clone);
+                (
+                    "served",
+                    format!("the column stands at {object_name} for {}", who(person)),
+                    json!({"person": person.0, "name": who(person), "object": id}),
+                )
+            }
+        };
+        Self { at_micros: event.at.micros(), at, kind: kind.into(), summary, detail }
+    }
+}
+
+/// A short name of a safety rule, for people.
+pub fn rule_title(rule: RuleId) -> &'static str {
+    usize::from(rule.0).checked_sub(1).and_then(|i| RULE_TITLES.get(i).copied()).unwrap_or("unknown rule")
+}
+
+/// R1 first.
+const RULE_TITLES: [&str; 16] = [
+    "travel",
+    "tracking",
+    "separation",
+    "software stop",
+    "motor current",
+    "following error",
+    "plausibility",
+    "controller link",
+    "control loop",
+    "VR client",
+    "game master present",
+    "intruder",
+    "keep-out shapes",
+    "contact interactions",
+    "tracking origin",
+    "arena confirmed clear",
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use covr_engine::mode::Mode;
+    use covr_engine::time::Time;
+
+    #[test]
+    fn every_rule_has_a_title_and_no_other_number_has() {
+        let titles: std::collections::BTreeSet<_> = (1..=16).map(|rule| rule_title(RuleId(rule))).collect();
+        assert_eq!(titles.len(), 16);
+        assert!([0, 17, 255].into_iter().all(|rule| rule_title(RuleId(rule)) == "unknown rule"));
+    }
+
+    #[test]
+    fn events_name_persons_objects_and_rules() {
+        let objects = ["kettle".to_owned()];
+        let names = BTreeMap::from([(PersonId(3), "Ada".to_owned())]);
+        let said = |kind| {
+            let event = EngineEvent { at: Time::from_micros(5), kind };
+            let event = Event::new(&event, "2026-01-01T00:00:00Z".into(), &names, &objects);
+            (event.kind.clone(), event.summary)
+        };
+        let served = said(EventKind::Served { person: PersonId(3), object: 0 });
+        assert_eq!(served, ("served".into(), "the column stands at kettle for Ada".into()));
+        let breached = said(EventKind::RuleBreached {
+            rule: RuleId(2),
+            reason: covr_engine::reason::Reason::PoseTooOld(PersonId(3), 0.6),
+        });
+        let words = "R2 tracking: the newest pose of Ada is 0.60 s old";
+        assert_eq!(breached, ("rule_breached".into(), words.into()));
+        let changed = said(EventKind::ModeChanged {
+            from: Mode::Following,
+            to: Mode::LatchedStop,
+            rule: Some(RuleId(4)),
+            because: covr_engine::reason::Reason::SoftwareStop("hand".into()),
+        });
+        assert_eq!(changed.1, "following to latched stop: R4: software stop: hand");
+    }
+}
