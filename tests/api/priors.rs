@@ -85,6 +85,8 @@ async fn a_preview_tells_what_priors_would_do_and_changes_nothing() {
     assert_eq!(previewed["serves"], state["persons"][0]["id"]);
     let last = previewed["objects"].as_array().unwrap().last().unwrap();
     assert_eq!((&last["id"], &last["prior"]), (&chosen["id"], &json!(0.7)));
+    let others = &previewed["objects"].as_array().unwrap()[..objects.len() - 1];
+    assert!(others.iter().all(|other| other["probability"] == json!(0.0)), "{previewed}");
     // What is left is "none of them".
     assert!(last["probability"].as_f64().unwrap() > 0.9, "{last}");
     assert!(!previewed["planned_path_m"].as_array().unwrap().is_empty());
