@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the report")]
 
+mod tokens;
+
 use std::process::Command;
 use std::time::Duration;
 

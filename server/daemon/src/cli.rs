@@ -10,6 +10,7 @@ use crate::evaluate::Evaluate;
 use crate::explain::Explain;
 use crate::fit::Fit;
 use crate::prove::Prove;
+use crate::token_command::TokenCommand;
 
 /// CoVR: the column is there before your hand is.
 #[derive(Debug, Parser)]
@@ -40,6 +41,8 @@ pub enum Command {
     Fit(Fit),
     /// Try to have the machine break the separation rule in random worlds; exit code 1 if it ever does.
     Prove(Prove),
+    /// Make, list and take back the tokens that people and programs sign in with.
+    Token(TokenCommand),
     /// Ask a running server whether it is ready; exit code 2 if it is not.
     Health(Health),
     /// Print every configuration key with its default and its meaning.

@@ -3,8 +3,10 @@
 //! - [`control`]: the one thread that owns engine and gantry.
 //! - [`recorder`], [`store`]: what outlives the process.
 //! - [`http`], [`ws`]: the ways in and out.
+//! - [`access`]: who may do what.
 //! - [`serve`]: puts them together, and takes them apart with the machine at rest first.
 
+pub mod access;
 pub mod app;
 pub mod cli;
 pub mod clients;
@@ -25,6 +27,7 @@ pub mod recording;
 pub mod serve;
 pub mod stage;
 pub mod store;
+pub mod token_command;
 pub mod visitor;
 pub mod web;
 pub mod ws;

@@ -10,7 +10,7 @@ use covr_server::cli::{Check, Cli, Command, Health, Serve, Visitor};
 use covr_server::config::{self, Config};
 use covr_server::prove::Prove;
 use covr_server::serve::{Reach, Server, stop_at_signal, stop_signal, told_by_signal};
-use covr_server::{evaluate, explain, fit, logs, prove, visitor};
+use covr_server::{evaluate, explain, fit, logs, prove, token_command, visitor};
 use covr_wire::scene::parse_scene;
 
 fn main() -> ExitCode {
@@ -23,6 +23,9 @@ fn main() -> ExitCode {
         Command::Explain(options) => explain::run(&options).and_then(|words| print(&words)),
         Command::Fit(options) => fit::run(&options).and_then(|report| print(&report)),
         Command::Prove(options) => return attempt(&options),
+        Command::Token(options) => runtime()
+            .and_then(|runtime| runtime.block_on(token_command::run(options)))
+            .and_then(|words| print(&words)),
         Command::Health(options) => health(&options),
         Command::Config => print(&config::reference(&Config::default())),
     };

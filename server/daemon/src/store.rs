@@ -1,4 +1,4 @@
-//! What outlives the process: scenes, sessions with their recordings, events, prior changes, and what the next start must know.
+//! What outlives the process: scenes, sessions with their recordings, events, prior changes, tokens, and what the next start must know.
 //!
 //! SQLite in WAL mode with `synchronous=FULL`: what a method has returned survives kill -9 and loss of power.
 //! The control loop never comes here.
@@ -8,6 +8,7 @@ mod priors;
 mod recordings;
 mod scenes;
 mod sessions;
+mod tokens;
 
 use std::path::Path;
 use std::str::FromStr;
@@ -23,6 +24,7 @@ pub use priors::PriorChange;
 pub use recordings::{Keep, NewChunk, StoredChunk};
 pub use scenes::SceneVersion;
 pub use sessions::{NewSession, SessionEnd, SessionFilter};
+pub use tokens::{StoredLogin, StoredToken};
 
 /// The database.
 #[derive(Debug, Clone)]
