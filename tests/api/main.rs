@@ -14,6 +14,7 @@ mod openapi;
 mod person;
 mod priors;
 mod record;
+mod roles;
 mod scenes;
 mod sessions;
 mod visitor;

@@ -8,15 +8,18 @@ use reqwest::Client;
 use serde_json::{Value, json};
 
 /// One documented operation.
-struct Operation {
-    method: String,
-    path: String,
-    about: Value,
+pub struct Operation {
+    /// In capitals.
+    pub method: String,
+    /// With its parameters in braces.
+    pub path: String,
+    /// What the document says.
+    pub about: Value,
 }
 
 impl Operation {
     /// Its path with each parameter's example in place, `1` where there is none.
-    fn address(&self) -> String {
+    pub fn address(&self) -> String {
         let mut path = self.path.clone();
         for parameter in self.parameters("path") {
             path = path.replace(&format!("{{{}}}", parameter["name"].as_str().unwrap()), "1");
@@ -41,18 +44,20 @@ impl Operation {
         all.into_iter().flatten().filter(|parameter| parameter["in"] == place).collect()
     }
 
-    fn body(&self) -> Option<String> {
+    /// The example of its body.
+    pub fn body(&self) -> Option<String> {
         let body = self.about.get("requestBody")?;
         Some(body["content"]["application/json"]["example"].to_string())
     }
 
-    fn is_socket(&self) -> bool {
+    /// It becomes a WebSocket.
+    pub fn is_socket(&self) -> bool {
         self.path.starts_with("/ws/")
     }
 }
 
 /// Every documented operation.
-fn operations(contract: &Contract) -> Vec<Operation> {
+pub fn operations(contract: &Contract) -> Vec<Operation> {
     let paths = contract.0["paths"].as_object().unwrap();
     let all = paths.iter().flat_map(|(path, item)| {
         let methods = item.as_object().unwrap().iter().filter(|(_, about)| about.get("responses").is_some());

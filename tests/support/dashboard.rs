@@ -3,7 +3,9 @@
 use covr_wire::dashboard::{FromDashboard, ToDashboard};
 use futures_util::{SinkExt, StreamExt};
 use tokio::net::TcpStream;
-use tokio_tungstenite::tungstenite::Message;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest;
+use tokio_tungstenite::tungstenite::protocol::CloseFrame;
+use tokio_tungstenite::tungstenite::{Error, Message};
 use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
 
 use crate::SOON;
@@ -19,6 +21,19 @@ impl Dashboard {
     pub async fn connect(host: &str) -> Self {
         let (socket, _) = connect_async(format!("ws://{host}/ws/v1/dashboard")).await.unwrap();
         Self { socket }
+    }
+
+    /// Connect with a token; the status of a refusal otherwise.
+    pub async fn connect_with(host: &str, token: Option<&str>) -> Result<Self, u16> {
+        let mut request = format!("ws://{host}/ws/v1/dashboard").into_client_request().unwrap();
+        if let Some(token) = token {
+            request.headers_mut().insert("Authorization", format!("Bearer {token}").parse().unwrap());
+        }
+        match connect_async(request).await {
+            Ok((socket, _)) => Ok(Self { socket }),
+            Err(Error::Http(response)) => Err(response.status().as_u16()),
+            Err(why) => panic!("{why}"),
+        }
     }
 
     /// Say a message.
@@ -47,5 +62,19 @@ impl Dashboard {
             }
         });
         found.await.unwrap_or_else(|_| panic!("{what}: not heard within {SOON:?}"))
+    }
+
+    /// How the server closes the connection.
+    pub async fn closed(&mut self) -> Option<CloseFrame> {
+        let closed = tokio::time::timeout(SOON, async {
+            loop {
+                match self.socket.next().await {
+                    Some(Ok(Message::Close(frame))) => return frame,
+                    Some(Ok(_)) => {}
+                    Some(Err(_)) | None => return None,
+                }
+            }
+        });
+        closed.await.expect("the connection is closed in time")
     }
 }

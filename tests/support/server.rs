@@ -4,11 +4,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use covr_engine::mode::Mode;
+use covr_server::access::{Role, Token};
 use covr_server::app::App;
 use covr_server::config::Config;
 use covr_server::control::Published;
 use covr_server::http::Problem;
 use covr_server::serve::{Reach, Server};
+use covr_server::store::StoredToken;
 use reqwest::{Client, Method, Response};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -90,6 +92,47 @@ impl TestServer {
         let mut request = self.http.request(method, format!("http://{}{path}", self.host));
         if let Some(author) = author {
             request = request.header("X-Covr-Author", author);
+        }
+        if let Some(body) = body {
+            request = request.header("Content-Type", "application/json").body(body.to_owned());
+        }
+        request.send().await.unwrap()
+    }
+
+    /// A token of this role, in force at once. From the first one on, the server asks everybody who they are.
+    pub async fn token(&self, role: Role) -> String {
+        self.token_until(role, None).await
+    }
+
+    /// The same with an end, RFC 3339.
+    pub async fn token_until(&self, role: Role, expires: Option<&str>) -> String {
+        let token = Token::new().unwrap();
+        let stored = StoredToken {
+            id: token.id().into(),
+            name: format!("{} {}", role.in_words(), token.id()),
+            role,
+            hash: token.hash().unwrap(),
+            created: "2026-01-01T00:00:00Z".into(),
+            expires: expires.map(Into::into),
+            revoked: None,
+        };
+        assert!(self.app.store.add_token(&stored).await.unwrap());
+        self.app.roster.refresh().await.unwrap();
+        token.to_string()
+    }
+
+    /// One HTTP call with a token, or without.
+    pub async fn call_with(
+        &self,
+        token: Option<&str>,
+        method: &str,
+        path: &str,
+        body: Option<&str>,
+    ) -> Response {
+        let method = Method::from_bytes(method.as_bytes()).unwrap();
+        let mut request = self.http.request(method, format!("http://{}{path}", self.host));
+        if let Some(token) = token {
+            request = request.bearer_auth(token);
         }
         if let Some(body) = body {
             request = request.header("Content-Type", "application/json").body(body.to_owned());

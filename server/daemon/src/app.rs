@@ -1,5 +1,6 @@
 //! What every handler shares, and the acts that HTTP and dashboards have in common.
 
+use std::fmt;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -12,6 +13,7 @@ use metrics_exporter_prometheus::PrometheusHandle;
 use serde_json::{Value, json};
 use tokio::sync::{Semaphore, watch};
 
+use crate::access::{Caller, Roster};
 use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::config::{Config, Origins};
@@ -33,6 +35,8 @@ pub struct App {
     pub clock: Clock,
     /// The control thread.
     pub control: Control,
+    /// Who may do what.
+    pub roster: Arc<Roster>,
     /// The database.
     pub store: Store,
     /// The recorder.
@@ -45,6 +49,8 @@ pub struct App {
     pub stage: Arc<Stage>,
     /// Connected VR clients.
     pub clients: Arc<Clients>,
+    /// Places for VR clients that have not said who they are.
+    pub doorstep: Arc<Semaphore>,
     /// Places for dashboards.
     pub dashboard_seats: Arc<Semaphore>,
     /// Newest snapshot for dashboards, as text.
@@ -58,10 +64,44 @@ pub struct App {
 /// Who asks, and by what way.
 #[derive(Debug, Clone)]
 pub struct Asker {
-    /// `http`, `dashboard`.
+    /// `http`, `dashboard`, `signal`.
     pub by: &'static str,
-    /// The name given, or `anonymous`.
-    pub author: String,
+    /// The name that they give themselves, if they do.
+    pub given: Option<String>,
+    /// Who they are.
+    pub caller: Caller,
+}
+
+impl Asker {
+    /// The name given, else the token's, else `anonymous`.
+    pub fn author(&self) -> &str {
+        let named = self.given.as_deref().or_else(|| self.caller.holder().map(|holder| holder.name.as_str()));
+        named.unwrap_or("anonymous")
+    }
+
+    /// The particulars of an event, with who did it: the name given, and the token and role behind it.
+    pub fn sign(&self, mut detail: Value) -> Value {
+        detail["author"] = self.author().into();
+        detail["by"] = self.by.into();
+        if let Some(holder) = self.caller.holder() {
+            detail["actor"] =
+                json!({ "token": holder.name, "token_id": holder.token_id, "role": holder.role });
+        }
+        detail
+    }
+}
+
+/// `Ada`, or `Ada (front desk, game master)` where there are tokens.
+impl fmt::Display for Asker {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.caller.holder() {
+            Some(holder) if holder.name == self.author() => {
+                write!(f, "{} ({})", holder.name, holder.role.in_words())
+            }
+            Some(holder) => write!(f, "{} ({}, {})", self.author(), holder.name, holder.role.in_words()),
+            None => f.write_str(self.author()),
+        }
+    }
 }
 
 impl App {
@@ -109,13 +149,13 @@ impl App {
         meters::stop_pressed(lane, reached.as_ref().ok().copied());
         let micros = reached.as_ref().ok().map(|d| d.as_micros() as u64);
         let summary = match micros {
-            Some(micros) => format!("{} pressed stop; at the drive after {micros} us", asker.author),
-            None => format!("{} pressed stop; the drive did not acknowledge", asker.author),
+            Some(micros) => format!("{asker} pressed stop; at the drive after {micros} us"),
+            None => format!("{asker} pressed stop; the drive did not acknowledge"),
         };
         self.recorder.record(
             "stop_pressed",
             summary,
-            json!({ "author": asker.author, "by": asker.by, "reason": reason, "to_drive_micros": micros }),
+            asker.sign(json!({ "reason": reason, "to_drive_micros": micros })),
         );
         if tokio::time::timeout(LONGEST_RECORDING, self.recorder.settled()).await != Ok(Settled::Stored) {
             tracing::error!("a stop could not be stored; it will not survive a restart");
@@ -147,11 +187,9 @@ impl App {
         let why = self.reason(&answer);
         let kind = if answer.outcome == Outcome::Refused { "request_refused" } else { "request_accepted" };
         let outcome = if answer.outcome == Outcome::Refused { "refused" } else { "accepted" };
-        detail["author"] = asker.author.as_str().into();
-        detail["by"] = asker.by.into();
         detail["detail"] = why.to_string().into();
         detail["why"] = json!(why);
-        self.recorder.record(kind, format!("{name} by {}: {outcome}: {why}", asker.author), detail);
+        self.recorder.record(kind, format!("{name} by {asker}: {outcome}: {why}"), asker.sign(detail));
         if self.recorder.settled().await == Settled::Lost {
             tracing::error!(request = name, "an accepted request could not be stored");
         }

@@ -28,6 +28,8 @@ pub use origins::{Loaded, Origins};
 pub struct Config {
     /// Sockets and files.
     pub server: Server,
+    /// Who may do what.
+    pub access: Access,
     /// The control loop.
     pub control: Control,
     /// The machine.
@@ -57,6 +59,13 @@ pub struct Server {
     pub request_timeout_secs: f64,
     /// Longest time that the machine may take to come to rest at shutdown, s.
     pub rest_timeout_secs: f64,
+}
+
+/// Who may do what.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Access {
+    /// How long a browser stays signed in, hours.
+    pub login_hours: f64,
 }
 
 /// The control loop.
@@ -179,6 +188,7 @@ impl Default for Config {
                 request_timeout_secs: 10.0,
                 rest_timeout_secs: 3.0,
             },
+            access: Access { login_hours: 12.0 },
             control: Control {
                 rate_hz: 250.0,
                 publish_hz: 30.0,

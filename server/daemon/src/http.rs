@@ -3,6 +3,7 @@
 mod asyncapi;
 mod config;
 mod events;
+mod gate;
 mod guard;
 mod health;
 mod input;
@@ -64,6 +65,7 @@ pub fn router(app: Arc<App>) -> Router {
         .layer(from_fn(timing::measure))
         .layer(CatchPanicLayer::new())
         .layer(TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, time_out))
+        .layer(from_fn_with_state(app.clone(), gate::pass))
         .layer(DefaultBodyLimit::max(MAX_SCENE_BYTES));
     let sockets = asyncapi::document(&app.config);
     api.route("/api/v1/asyncapi.json", get(move || std::future::ready(sockets.clone().into_response())))

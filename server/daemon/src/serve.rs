@@ -18,12 +18,15 @@ use covr_gantry::sim::parameters::MachineParameters;
 use covr_wire::dashboard::MachineShape;
 use covr_wire::reason::last_run;
 use covr_wire::scene::parse_scene;
+use serde_json::json;
 use tokio::net::TcpListener;
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::{Semaphore, watch};
 use tokio::task::JoinHandle;
+use tokio::time::MissedTickBehavior;
 
-use crate::app::App;
+use crate::access::{Caller, Change, Roster};
+use crate::app::{App, Asker};
 use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::config::{Config, Loaded, MachineKind};
@@ -84,6 +87,8 @@ impl Server {
         if let Some(record) = &left_over.latched_because {
             tracing::warn!("{}; reset it to go on", last_run(record));
         }
+        let login_lasts = Duration::from_secs_f64(config.access.login_hours * SECS_AN_HOUR);
+        let roster = Arc::new(Roster::open(store.clone(), login_lasts).await.context("tokens")?);
         let active = active_scene(&store, left_over.active_scene).await?;
         let priors = store.priors_in_force().await?;
 
@@ -136,7 +141,7 @@ impl Server {
             .await
             .with_context(|| format!("cannot listen on {}", config.server.bind))?;
         let address = listener.local_addr()?;
-        let dashboards = config.dashboards.most;
+        let (dashboards, clients_most) = (config.dashboards.most, config.clients.most);
         let closing = watch::Sender::new(None);
         let frames = watch::Sender::new(Arc::from(""));
         let app = Arc::new(App {
@@ -144,18 +149,21 @@ impl Server {
             origins,
             clock,
             control,
+            roster,
             store,
             recorder,
             recording,
             persons,
             stage,
             clients,
+            doorstep: Arc::new(Semaphore::new(clients_most)),
             dashboard_seats: Arc::new(Semaphore::new(dashboards)),
             frames: frames.subscribe(),
             closing: closing.subscribe(),
             prometheus,
         });
         tokio::spawn(live::publish(app.clone(), frames));
+        tokio::spawn(follow_tokens(app.clone()));
         // Without Nagle's delay: a column's position that waits for the one before is old.
         let listener = listener.tap_io(|connection| {
             if let Err(why) = connection.set_nodelay(true) {
@@ -274,12 +282,40 @@ pub fn stop_signal() -> std::io::Result<Signal> {
 pub async fn stop_at_signal(app: Arc<App>, mut pressed: Signal) {
     while pressed.recv().await.is_some() {
         let received_at = std::time::Instant::now();
-        let asker = crate::app::Asker { by: "signal", author: "SIGUSR1".into() };
+        let asker = Asker { by: "signal", given: Some("SIGUSR1".into()), caller: Caller::Unasked };
         match app.stop(&asker, StopLaneName::Signal, Some("SIGUSR1".into()), received_at).await {
             Ok(to_drive) => tracing::warn!(to_drive_micros = to_drive.as_micros() as u64, "SIGUSR1: stopped"),
             Err(why) => tracing::error!(%why, "SIGUSR1: the stop was not acknowledged"),
         }
     }
+}
+
+/// See each second what became of the tokens, and record it. Ends with the server.
+async fn follow_tokens(app: Arc<App>) {
+    let mut closing = app.closing.clone();
+    let mut due = tokio::time::interval(LOOK_AT_TOKENS_EVERY);
+    due.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    loop {
+        tokio::select! {
+            _ = due.tick() => {}
+            _ = closing.changed() => return,
+        }
+        match app.roster.refresh().await {
+            Ok(changes) => changes.iter().for_each(|change| record_token(&app, change)),
+            // Who was known stays known: the machine can be run without the database.
+            Err(error) => tracing::warn!(%error, "the tokens cannot be looked at"),
+        }
+    }
+}
+
+fn record_token(app: &App, change: &Change) {
+    let (kind, word, token) = match change {
+        Change::Made(token) => ("token_made", "made", token),
+        Change::Revoked(token) => ("token_revoked", "taken back", token),
+    };
+    let summary = format!("the token {} ({}) was {word}", token.name, token.role.in_words());
+    let detail = json!({ "token": token.name, "token_id": token.id, "role": token.role });
+    app.recorder.record(kind, summary, detail);
 }
 
 fn check_reach(config: &Config, reach: Reach) -> anyhow::Result<()> {
@@ -342,5 +378,7 @@ async fn active_scene(store: &Store, last: Option<(i64, i64)>) -> anyhow::Result
 }
 
 const FIRST_SCENE: &str = include_str!("../../../deploy/scenes/demo.json");
+const LOOK_AT_TOKENS_EVERY: Duration = Duration::from_secs(1);
+const SECS_AN_HOUR: f64 = 3_600.0;
 const AT_REST_MPS: f64 = 0.01;
 const LONGEST_CLOSE: Duration = Duration::from_secs(3);

@@ -36,6 +36,8 @@ async fn why_closing(closing: &mut watch::Receiver<Option<String>>) -> String {
     }
 }
 
+/// Why a socket is closed whose token was taken back.
+const TAKEN_BACK: &str = "the token was taken back";
 const LONGEST_SEND: Duration = Duration::from_secs(5);
 /// A control frame carries 125 bytes, two of them the code.
 const MOST_REASON_BYTES: usize = 123;

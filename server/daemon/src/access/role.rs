@@ -45,6 +45,12 @@ impl Role {
         }
     }
 
+    /// The name in a sentence, after "is".
+    pub fn with_article(self) -> String {
+        let vowel = matches!(self, Self::Observer | Self::Administrator);
+        format!("{} {}", if vowel { "an" } else { "a" }, self.in_words())
+    }
+
     /// The role of a name.
     pub fn parse(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|role| role.name() == name)

@@ -74,6 +74,11 @@ pub fn all() -> Vec<Key> {
             Place::Number(0.5..=30.0, |c| &mut c.server.rest_timeout_secs),
         ),
         Key::new(
+            "access.login_hours",
+            "How long a browser stays signed in, hours. Afterwards the page still shows what happens and can stop, and asks for the token.",
+            Place::Number(0.1..=720.0, |c| &mut c.access.login_hours),
+        ),
+        Key::new(
             "control.rate_hz",
             "Rate of the control loop, Hz.",
             Place::Number(50.0..=1_000.0, |c| &mut c.control.rate_hz),

@@ -13,6 +13,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::openapi::Document;
+use crate::access::{Who, table};
 use crate::config::Config;
 use crate::ws::client::MOST_READ_BYTES;
 use crate::ws::dashboard::MOST_MESSAGE_BYTES;
@@ -113,7 +114,8 @@ impl Direction {
             .enumerate()
             .map(|(index, example)| json!({ "name": format!("{name}-{}", index + 1), "payload": example }))
             .collect();
-        let message = json!({
+        let who = table::who_may(&format!("{} {name}", self.channel));
+        let mut message = json!({
             "name": name,
             "title": name,
             "summary": words,
@@ -121,6 +123,10 @@ impl Direction {
             "payload": payload,
             "examples": examples,
         });
+        // A dashboard's requests differ in who may: the channel's description has them.
+        if let Some(Who::Roles(roles)) = who {
+            message["x-covr-roles"] = roles.iter().map(|role| role.name()).collect();
+        }
         (name, message)
     }
 }
@@ -133,7 +139,8 @@ fn channels(config: &Config) -> Value {
     let [least, most] = POSE_RATE_HZ;
     let refusals = |others: Value| {
         let mut all = vec![
-            json!({ "status": 403, "when": "the page comes from another site, or the host is not this machine" }),
+            json!({ "status": 401, "when": "a token is shown that is not in force; on `/ws/v1/dashboard` also: none is shown, on a server that has tokens" }),
+            json!({ "status": 403, "when": "the token's role may not connect here, the page comes from another site, or the host is not this machine" }),
             json!({ "status": 503, "when": "as many are connected as the server takes" }),
         ];
         all.extend(others.as_array().cloned().unwrap_or_default());
@@ -149,7 +156,7 @@ fn channels(config: &Config) -> Value {
                 - Refused messages: 10 in a burst, forgiven at 2 a second; at 50 the connection is closed.\n\
                 - A frame is at most {MAX_FRAME_BYTES} bytes; longer ones are refused by `frame_too_large`, and from {MOST_READ_BYTES} bytes on end the connection.\n\
                 - `hello` within {hello} s; something at least every {silence} s after it.\n\n\
-                {CLIENT_CLOSES}"),
+                {CLIENT_ROLES}\n\n{CLIENT_CLOSES}"),
             "servers": [{ "$ref": "#/servers/here" }],
             "messages": {},
             "bindings": { "ws": {
@@ -167,20 +174,21 @@ fn channels(config: &Config) -> Value {
             "x-close-codes": [
                 { "code": 1000, "when": "the client has closed, or reads nothing" },
                 { "code": 1001, "when": "the server shuts down; the reason says why" },
-                { "code": 1008, "when": "after an `error` with `fatal`; the reason is its message" },
+                { "code": 1008, "when": "after an `error` with `fatal`; the reason is its message. So when the token was taken back" },
             ],
             "x-upgrade-refusals": refusals(json!([{ "status": 400, "when": "no offered subprotocol is spoken here" }])),
         },
         "dashboard": {
             "address": "/ws/v1/dashboard",
             "title": "Dashboards",
-            "description": format!("{DASHBOARDS}\n\nA message is at most {MOST_MESSAGE_BYTES} bytes; a longer one ends the connection.\n\n{DASHBOARD_CLOSES}"),
+            "description": format!("{DASHBOARDS}\n\n{DASHBOARD_ROLES}\n\nA message is at most {MOST_MESSAGE_BYTES} bytes; a longer one ends the connection.\n\n{DASHBOARD_CLOSES}"),
             "servers": [{ "$ref": "#/servers/here" }],
             "messages": {},
             "bindings": { "ws": { "method": "GET", "bindingVersion": "0.1.0" } },
             "x-content-types": { "": JSON },
             "x-close-codes": [
                 { "code": 1001, "when": "the server shuts down; the reason says why" },
+                { "code": 1008, "when": "the token was taken back, or its holder has signed out" },
                 { "code": 1013, "when": "too many events behind; connect again and start from a whole snapshot" },
             ],
             "x-upgrade-refusals": refusals(json!([])),
@@ -245,6 +253,20 @@ Send a `clock_ping` every second or two. The answer, `clock_pong`, has the serve
 `previous` when that pong came: so the server knows all four times of an exchange, and with them the age of each pose. Until the
 first exchange has closed, 20 ms are added to every age. The older a pose, the farther the column keeps away; `max_pose_age_secs` of
 the `welcome` is where it stops.";
+
+const CLIENT_ROLES: &str = "\
+### Tokens
+
+Where the server has tokens, a VR client needs one of role `client` (or `game_master`, `administrator`): as `token` of its `hello`, which every
+engine and every page can do, or as `Authorization: Bearer` of the upgrade. Without one the `hello` is answered by `unauthorized`.
+A visit is not cut off when the token ends by itself; it is when the token is taken back.";
+
+const DASHBOARD_ROLES: &str = "\
+### Roles
+
+Where the server has tokens, the upgrade needs one as `Authorization: Bearer`. `observer`, `designer`, `game_master` and `administrator` may look on, and
+each of them may `stop`, also when the token has ended meanwhile. Every `request` is for `game_master` and `administrator`: to others it is
+answered as refused.";
 
 const CLIENT_CLOSES: &str = "\
 ### Errors and close codes

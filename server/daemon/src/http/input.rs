@@ -1,12 +1,15 @@
-//! What callers send: bodies, authors, limits.
+//! What callers send: bodies, names, limits.
 
 use axum::extract::FromRequestParts;
+use axum::http::HeaderMap;
 use axum::http::request::Parts;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use utoipa::{IntoParams, ToSchema};
 
 use super::problem::{Problem, ProblemItem};
+use crate::access::Caller;
+use crate::app::Asker;
 
 /// Why, in the asker's words.
 #[derive(Debug, Clone, Default, Deserialize, ToSchema)]
@@ -24,10 +27,6 @@ pub struct Limit {
     /// Most rows, 1 to 10000; 100 when not given.
     pub limit: Option<u32>,
 }
-
-/// Who asks: the `X-Covr-Author` header (percent-encoded where it is not plain ASCII), else `anonymous`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Author(pub String);
 
 impl Limit {
     /// Rows, or a refusal.
@@ -57,20 +56,32 @@ impl ReasonBody {
     }
 }
 
-impl<S: Send + Sync> FromRequestParts<S> for Author {
+/// The caller whom the gate let in, under the name of the `X-Covr-Author` header (percent-encoded where it is not
+/// plain ASCII).
+impl<S: Send + Sync> FromRequestParts<S> for Asker {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
-        let Some(header) = parts.headers.get(AUTHOR_HEADER) else { return Ok(Self("anonymous".into())) };
-        let name = percent_encoding::percent_decode(header.as_bytes())
-            .decode_utf8()
-            .map(|name| name.trim().to_owned())
-            .unwrap_or_default();
-        if name.is_empty() || name.chars().count() > 64 || name.chars().any(char::is_control) {
-            return Err(invalid_item(AUTHOR_HEADER, "another text", "1 to 64 printable characters"));
-        }
-        Ok(Self(name))
+        let given = author(&parts.headers)?;
+        Ok(Self { by: "http", given, caller: caller(parts) })
     }
+}
+
+/// Whom the gate let in.
+pub fn caller(parts: &Parts) -> Caller {
+    parts.extensions.get().cloned().unwrap_or(Caller::Stranger)
+}
+
+fn author(headers: &HeaderMap) -> Result<Option<String>, Problem> {
+    let Some(header) = headers.get(AUTHOR_HEADER) else { return Ok(None) };
+    let name = percent_encoding::percent_decode(header.as_bytes())
+        .decode_utf8()
+        .map(|name| name.trim().to_owned())
+        .unwrap_or_default();
+    if name.is_empty() || name.chars().count() > 64 || name.chars().any(char::is_control) {
+        return Err(invalid_item(AUTHOR_HEADER, "another text", "1 to 64 printable characters"));
+    }
+    Ok(Some(name))
 }
 
 /// Read a JSON body; a refusal names path, line and column.

@@ -19,7 +19,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::input::{Author, ReasonBody, invalid_item};
+use super::input::{ReasonBody, caller, invalid_item};
 use super::problem::Problem;
 use crate::app::{App, Asker};
 use crate::control::StopLaneName;
@@ -66,33 +66,33 @@ async fn state(State(app): State<Arc<App>>) -> Response {
 /// Find the switches. Whoever asks says that the arena is clear.
 #[utoipa::path(post, path = "/home", tag = "machine", request_body(content = ReasonBody, description = "May be empty"),
     responses((status = 200, body = Answered), (status = 409, description = "Refused", body = Problem), (status = 503, description = "Busy", body = Problem)))]
-async fn home(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Result<Json<Answered>, Problem> {
-    ask(&app, author, RequestKind::Home, &body).await
+async fn home(State(app): State<Arc<App>>, asker: Asker, body: Bytes) -> Result<Json<Answered>, Problem> {
+    ask(&app, &asker, RequestKind::Home, &body).await
 }
 
 /// Follow the visitor.
 #[utoipa::path(post, path = "/arm", tag = "machine", request_body(content = ReasonBody, description = "May be empty"),
     responses((status = 200, body = Answered), (status = 409, description = "Refused", body = Problem), (status = 503, description = "Busy", body = Problem)))]
-async fn arm(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Result<Json<Answered>, Problem> {
-    ask(&app, author, RequestKind::Arm, &body).await
+async fn arm(State(app): State<Arc<App>>, asker: Asker, body: Bytes) -> Result<Json<Answered>, Problem> {
+    ask(&app, &asker, RequestKind::Arm, &body).await
 }
 
 /// Brake and release the drive.
 #[utoipa::path(post, path = "/disarm", tag = "machine", request_body(content = ReasonBody, description = "May be empty"),
     responses((status = 200, body = Answered), (status = 409, description = "Refused", body = Problem), (status = 503, description = "Busy", body = Problem)))]
-async fn disarm(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Result<Json<Answered>, Problem> {
-    ask(&app, author, RequestKind::Disarm, &body).await
+async fn disarm(State(app): State<Arc<App>>, asker: Asker, body: Bytes) -> Result<Json<Answered>, Problem> {
+    ask(&app, &asker, RequestKind::Disarm, &body).await
 }
 
 /// Leave a latched stop or a fault. Starts nothing.
 #[utoipa::path(post, path = "/reset", tag = "machine", request_body(content = ReasonBody, description = "The reason is due"),
     responses((status = 200, body = Answered), (status = 409, description = "Refused", body = Problem),
         (status = 422, description = "No reason given", body = Problem), (status = 503, description = "Busy", body = Problem)))]
-async fn reset(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Result<Json<Answered>, Problem> {
+async fn reset(State(app): State<Arc<App>>, asker: Asker, body: Bytes) -> Result<Json<Answered>, Problem> {
     if ReasonBody::read(&body)?.is_none() {
         return Err(invalid_item("reason", "nothing", "why the machine may leave its stop, in words"));
     }
-    ask(&app, author, RequestKind::Reset, &body).await
+    ask(&app, &asker, RequestKind::Reset, &body).await
 }
 
 /// The software stop. No body, header or origin keeps it from stopping: a bad or slow body costs the reason alone.
@@ -100,14 +100,14 @@ async fn reset(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Resu
     responses((status = 200, body = StopAcknowledged), (status = 503, description = "The drive did not acknowledge", body = Problem)))]
 async fn stop(
     State(app): State<Arc<App>>,
-    author: Result<Author, Problem>,
+    asker: Result<Asker, Problem>,
     request: Request,
 ) -> Result<Json<StopAcknowledged>, Problem> {
     let received_at = Instant::now();
-    let body = tokio::time::timeout(LONGEST_STOP_BODY, to_bytes(request.into_body(), MOST_STOP_BODY)).await;
+    let (parts, body) = request.into_parts();
+    let body = tokio::time::timeout(LONGEST_STOP_BODY, to_bytes(body, MOST_STOP_BODY)).await;
     let reason = body.ok().and_then(Result::ok).and_then(|body| ReasonBody::read(&body).ok()).flatten();
-    let author = author.map_or_else(|_| "anonymous".into(), |author| author.0);
-    let asker = Asker { by: "http", author };
+    let asker = asker.unwrap_or_else(|_| Asker { by: "http", given: None, caller: caller(&parts) });
     let to_drive = app
         .stop(&asker, StopLaneName::Http, reason, received_at)
         .await
@@ -121,11 +121,10 @@ async fn stop(
         (status = 409, description = "Refused", body = Problem)))]
 async fn confirm(
     State(app): State<Arc<App>>,
-    author: Author,
+    asker: Asker,
     Path(id): Path<String>,
 ) -> Result<Json<Answered>, Problem> {
     let person = inside(&app, &id)?;
-    let asker = Asker { by: "http", author: author.0 };
     answered(&app, &app.confirm_origin(&asker, person).await?)
 }
 
@@ -135,11 +134,10 @@ async fn confirm(
         (status = 409, description = "Refused: the headset is tracked", body = Problem)))]
 async fn left(
     State(app): State<Arc<App>>,
-    author: Author,
+    asker: Asker,
     Path(id): Path<String>,
 ) -> Result<Json<Answered>, Problem> {
     let person = inside(&app, &id)?;
-    let asker = Asker { by: "http", author: author.0 };
     answered(&app, &app.confirm_left(&asker, person).await?)
 }
 
@@ -148,10 +146,9 @@ fn inside(app: &App, id: &str) -> Result<PersonId, Problem> {
     person.ok_or_else(|| Problem::not_found(Reason::PersonNotInside { person: id.into() }))
 }
 
-async fn ask(app: &App, author: Author, kind: RequestKind, body: &[u8]) -> Result<Json<Answered>, Problem> {
+async fn ask(app: &App, asker: &Asker, kind: RequestKind, body: &[u8]) -> Result<Json<Answered>, Problem> {
     let reason = ReasonBody::read(body)?;
-    let asker = Asker { by: "http", author: author.0 };
-    answered(app, &app.request(&asker, kind, reason).await?)
+    answered(app, &app.request(asker, kind, reason).await?)
 }
 
 fn answered(app: &App, answer: &Answer) -> Result<Json<Answered>, Problem> {

@@ -33,7 +33,10 @@ pub struct Document(Arc<str>);
             not here is answered 404, a method that a path does not take 405, both as problems.\n\n\
             A browser's page must come from this server: what another origin asks is refused (403), the stop alone is open to \
             everybody. Programs send no `Origin`. A server that listens on this machine alone takes only its names as host.\n\n\
-            What changes something takes its author from `X-Covr-Author`. WebSockets are described at `/api/v1/asyncapi.json`."
+            Where tokens exist (`covr token create`), whoever asks sends one as `Authorization: Bearer`. Its role must be among the \
+            operation's `x-covr-roles`: without a token in force the answer is 401, with another role 403. Operations without roles, \
+            the stop above all, are open to everybody. A server without any token asks nobody.\n\n\
+            What changes something takes its author from `X-Covr-Author`; the token's name and role are recorded beside it. WebSockets are described at `/api/v1/asyncapi.json`."
     ),
     tags(
         (name = "machine", description = "State, requests, the software stop"),

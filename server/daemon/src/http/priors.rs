@@ -16,9 +16,9 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::input::{Author, Limit, json as read_json};
+use super::input::{Limit, json as read_json};
 use super::problem::{Problem, ProblemItem};
-use crate::app::App;
+use crate::app::{App, Asker};
 use crate::stage::{BadPrior, PriorsRefused, read_priors};
 
 /// What became of priors.
@@ -75,11 +75,11 @@ pub fn routes() -> OpenApiRouter<Arc<App>> {
         (status = 422, description = "An unknown object, or not from 0 to 1; nothing is changed", body = Problem)))]
 async fn change(
     State(app): State<Arc<App>>,
-    author: Author,
+    asker: Asker,
     body: Bytes,
 ) -> Result<Json<PriorsChanged>, Problem> {
     let wanted: BTreeMap<String, Value> = read_json(&body)?;
-    let done = app.stage.change_priors(&app.control, &app.store, &author.0, &wanted).await;
+    let done = app.stage.change_priors(&app.control, &app.store, asker.author(), &wanted).await;
     let changes = done.map_err(|why| match why {
         PriorsRefused::Invalid(bad) => invalid(bad),
         PriorsRefused::Refused(why) => Problem::refused(Reason::new(&why, &app.persons.names())),
@@ -89,8 +89,8 @@ async fn change(
     for change in &changes {
         app.recorder.record(
             "prior_changed",
-            format!("{} set the prior of {} from {} to {}", author.0, change.object, change.from, change.to),
-            json!({ "author": author.0, "object": change.object, "from": change.from, "to": change.to }),
+            format!("{asker} set the prior of {} from {} to {}", change.object, change.from, change.to),
+            asker.sign(json!({ "object": change.object, "from": change.from, "to": change.to })),
         );
     }
     Ok(Json(PriorsChanged { changed: changes.into_iter().map(|change| change.object).collect() }))

@@ -90,6 +90,11 @@ impl Problem {
         Self::new(StatusCode::NOT_FOUND, "not-found", "Not found", why.to_string()).because(why)
     }
 
+    /// Nobody who is known.
+    pub fn unauthorized(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::UNAUTHORIZED, "unauthorized", "Not signed in", detail)
+    }
+
     /// Not for this asker.
     pub fn forbidden(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::FORBIDDEN, "forbidden", "Forbidden", detail)

@@ -17,9 +17,8 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::input::Author;
 use super::problem::{Problem, ProblemItem};
-use crate::app::App;
+use crate::app::{App, Asker};
 use crate::stage::ActivationRefused;
 
 /// Where a scene was stored.
@@ -81,9 +80,9 @@ async fn list(State(app): State<Arc<App>>) -> Result<Json<Vec<SceneSummary>>, Pr
 #[utoipa::path(post, path = "/scenes", tag = "scenes", request_body = ref("#/components/schemas/SceneDocument"),
     responses((status = 201, body = SceneStored), (status = 400, description = "Not JSON", body = Problem),
         (status = 422, description = "Not a scene, place by place", body = Problem)))]
-async fn add(State(app): State<Arc<App>>, author: Author, body: Bytes) -> Result<Response, Problem> {
+async fn add(State(app): State<Arc<App>>, asker: Asker, body: Bytes) -> Result<Response, Problem> {
     let (document, _) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
-    let id = app.store.add_scene(&document, &author.0).await?;
+    let id = app.store.add_scene(&document, asker.author()).await?;
     let place = [(header::LOCATION, format!("/api/v1/scenes/{id}"))];
     Ok((StatusCode::CREATED, place, Json(SceneStored { id, version: 1 })).into_response())
 }
@@ -137,7 +136,7 @@ async fn versions(
         (status = 404, description = "No such scene", body = Problem), (status = 422, description = "Not a scene, place by place", body = Problem)))]
 async fn replace(
     State(app): State<Arc<App>>,
-    author: Author,
+    asker: Asker,
     Path(id): Path<String>,
     body: Bytes,
 ) -> Result<Json<SceneStored>, Problem> {
@@ -145,7 +144,7 @@ async fn replace(
     let id_number = number(&id)?;
     let version = app
         .store
-        .add_scene_version(id_number, &document, &author.0)
+        .add_scene_version(id_number, &document, asker.author())
         .await?
         .ok_or_else(|| no_scene(&id, None))?;
     Ok(Json(SceneStored { id: id_number, version }))
@@ -157,7 +156,7 @@ async fn replace(
         (status = 409, description = "Not now", body = Problem)))]
 async fn activate(
     State(app): State<Arc<App>>,
-    author: Author,
+    asker: Asker,
     Path(id): Path<String>,
     Query(Version { version }): Query<Version>,
 ) -> Result<Json<SceneActivated>, Problem> {
@@ -171,8 +170,8 @@ async fn activate(
     })?;
     app.recorder.record(
         "scene_activated",
-        format!("{} activated \"{name}\" (scene {id}, version {version})", author.0),
-        json!({ "author": author.0, "scene": id, "version": version, "name": name }),
+        format!("{asker} activated \"{name}\" (scene {id}, version {version})"),
+        asker.sign(json!({ "scene": id, "version": version, "name": name })),
     );
     app.recorder.settled().await;
     Ok(Json(SceneActivated { id, version, detail: app.reason(&answer).to_string() }))

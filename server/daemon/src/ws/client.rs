@@ -6,8 +6,8 @@ mod guest;
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::extract::State;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade, close_code};
+use axum::extract::{Extension, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use covr_engine::time::{Span, Time};
@@ -18,13 +18,18 @@ use futures_util::stream::{SplitSink, SplitStream};
 use tokio::sync::mpsc;
 use tokio::time::{Instant, timeout_at};
 
-use self::guest::{Guest, Reply};
+use self::guest::{Guest, Place, Reply};
 use super::{Gone, close, send, why_closing};
+use crate::access::Caller;
 use crate::app::App;
-use crate::clients::Seat;
 
 /// Accept a VR client.
-pub async fn upgrade(State(app): State<Arc<App>>, headers: HeaderMap, upgrade: WebSocketUpgrade) -> Response {
+pub async fn upgrade(
+    State(app): State<Arc<App>>,
+    Extension(caller): Extension<Caller>,
+    headers: HeaderMap,
+    upgrade: WebSocketUpgrade,
+) -> Response {
     let offered: Vec<&str> = headers
         .get_all(header::SEC_WEBSOCKET_PROTOCOL)
         .iter()
@@ -43,17 +48,25 @@ pub async fn upgrade(State(app): State<Arc<App>>, headers: HeaderMap, upgrade: W
             }
         }
     };
-    let Some(seat) = app.clients.take_seat() else {
+    // Whoever has yet to say who they are takes no seat from those who are known.
+    let place = if caller == Caller::Stranger {
+        app.doorstep.clone().try_acquire_owned().ok().map(|permit| Place::Doorstep { _permit: permit })
+    } else {
+        app.clients.take_seat().map(Place::Seat)
+    };
+    let Some(place) = place else {
         let why = "as many VR clients as the server takes are connected";
         return (StatusCode::SERVICE_UNAVAILABLE, why).into_response();
     };
-    upgrade.max_message_size(MOST_READ_BYTES).on_upgrade(move |socket| serve(app, socket, encoding, seat))
+    upgrade
+        .max_message_size(MOST_READ_BYTES)
+        .on_upgrade(move |socket| serve(app, socket, encoding, caller, place))
 }
 
-async fn serve(app: Arc<App>, socket: WebSocket, encoding: Encoding, seat: Seat) {
+async fn serve(app: Arc<App>, socket: WebSocket, encoding: Encoding, caller: Caller, place: Place) {
     let (sink, stream) = socket.split();
     let (replies, replies_out) = mpsc::channel(REPLY_QUEUE);
-    let guest = Guest::new(app.clone(), encoding, seat);
+    let guest = Guest::new(app.clone(), encoding, caller, place);
     let writer = write(app.clone(), sink, encoding, replies_out);
     tokio::pin!(writer);
     tokio::select! {
@@ -72,9 +85,21 @@ async fn read(
 ) {
     let wait = |secs: f64| Instant::now() + Duration::from_secs_f64(secs);
     let mut deadline = wait(app.config.clients.hello_timeout_secs);
+    let mut roster = app.roster.watch();
     loop {
         let next_show = app.clock.instant_of(guest.next_show()).into();
-        let message = match timeout_at(deadline.min(next_show), stream.next()).await {
+        let next = tokio::select! {
+            biased;
+            next = timeout_at(deadline.min(next_show), stream.next()) => next,
+            Ok(()) = roster.changed() => {
+                if let Some(reply) = guest.taken_back() {
+                    let _ = replies.try_send(reply);
+                    return;
+                }
+                continue;
+            }
+        };
+        let message = match next {
             Ok(Some(Ok(message))) => message,
             Ok(Some(Err(_)) | None) => return,
             // A silent client is shown as it stands now, not as it stood when it last spoke.
@@ -89,8 +114,8 @@ async fn read(
         };
         let received = app.clock.now();
         let reply = match &message {
-            Message::Text(text) => guest.take_frame(Encoding::Json, text.as_bytes(), received),
-            Message::Binary(bytes) => guest.take_frame(Encoding::MessagePack, bytes, received),
+            Message::Text(text) => guest.take_frame(Encoding::Json, text.as_bytes(), received).await,
+            Message::Binary(bytes) => guest.take_frame(Encoding::MessagePack, bytes, received).await,
             Message::Ping(_) | Message::Pong(_) => None,
             Message::Close(_) => return,
         };

@@ -6,8 +6,8 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use axum::extract::State;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade, close_code};
+use axum::extract::{Extension, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use covr_engine::Answer;
@@ -20,26 +20,32 @@ use futures_util::stream::{SplitSink, SplitStream};
 use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::{OwnedSemaphorePermit, mpsc};
 
-use super::{Gone, close, send, why_closing};
+use super::{Gone, TAKEN_BACK, close, send, why_closing};
+use crate::access::table::dashboard_key;
+use crate::access::{Caller, Standing};
 use crate::app::{App, Asker};
 use crate::control::{NotDelivered, StopLaneName};
 use crate::live::wire_snapshot;
 
 /// Accept a dashboard.
-pub async fn upgrade(State(app): State<Arc<App>>, upgrade: WebSocketUpgrade) -> Response {
+pub async fn upgrade(
+    State(app): State<Arc<App>>,
+    Extension(caller): Extension<Caller>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
     let Ok(seat) = app.dashboard_seats.clone().try_acquire_owned() else {
         let why = "as many dashboards as the server takes are connected";
         return (StatusCode::SERVICE_UNAVAILABLE, why).into_response();
     };
-    upgrade.max_message_size(MOST_MESSAGE_BYTES).on_upgrade(move |socket| serve(app, socket, seat))
+    upgrade.max_message_size(MOST_MESSAGE_BYTES).on_upgrade(move |socket| serve(app, socket, caller, seat))
 }
 
-async fn serve(app: Arc<App>, socket: WebSocket, _seat: OwnedSemaphorePermit) {
+async fn serve(app: Arc<App>, socket: WebSocket, caller: Caller, _seat: OwnedSemaphorePermit) {
     let (sink, stream) = socket.split();
     let (answers, answers_out) = mpsc::channel(ANSWER_QUEUE);
     tokio::select! {
-        _ = write(app.clone(), sink, answers_out) => {}
-        () = read(app, stream, answers) => {}
+        _ = write(app.clone(), sink, caller.clone(), answers_out) => {}
+        () = read(app, stream, caller, answers) => {}
     }
 }
 
@@ -47,12 +53,14 @@ async fn serve(app: Arc<App>, socket: WebSocket, _seat: OwnedSemaphorePermit) {
 async fn write(
     app: Arc<App>,
     mut sink: SplitSink<WebSocket, Message>,
+    caller: Caller,
     mut answers: mpsc::Receiver<ToDashboard>,
 ) -> Result<(), Gone> {
     let mut events = app.recorder.live();
     let mut frames = app.frames.clone();
     let mut stage = app.stage.watch();
     let mut closing = app.closing.clone();
+    let mut roster = app.roster.watch();
     say(&mut sink, &welcome(&app)).await?;
     say(&mut sink, &scene(&app)).await?;
     stage.mark_unchanged();
@@ -63,6 +71,11 @@ async fn write(
             biased;
             reason = why_closing(&mut closing) => {
                 return close(&mut sink, close_code::AWAY, &reason).await;
+            }
+            Ok(()) = roster.changed() => {
+                if app.roster.standing(&caller) == Standing::TakenBack {
+                    return close(&mut sink, close_code::POLICY, TAKEN_BACK).await;
+                }
             }
             Some(answer) = answers.recv() => say(&mut sink, &answer).await?,
             Ok(()) = stage.changed() => say(&mut sink, &scene(&app)).await?,
@@ -83,7 +96,12 @@ async fn write(
 }
 
 /// A stop waits for nothing that came before it: each message is handled on a task of its own.
-async fn read(app: Arc<App>, mut stream: SplitStream<WebSocket>, answers: mpsc::Sender<ToDashboard>) {
+async fn read(
+    app: Arc<App>,
+    mut stream: SplitStream<WebSocket>,
+    caller: Caller,
+    answers: mpsc::Sender<ToDashboard>,
+) {
     while let Some(Ok(message)) = stream.next().await {
         let received_at = Instant::now();
         let text = match message {
@@ -92,18 +110,25 @@ async fn read(app: Arc<App>, mut stream: SplitStream<WebSocket>, answers: mpsc::
             Message::Ping(_) | Message::Pong(_) => continue,
             Message::Close(_) => return,
         };
-        let (app, answers) = (app.clone(), answers.clone());
+        let (app, caller, answers) = (app.clone(), caller.clone(), answers.clone());
         tokio::spawn(async move {
-            let answer = answer(&app, &text, received_at).await;
+            let answer = answer(&app, caller, &text, received_at).await;
             // The connection may have gone meanwhile; then nobody waits for this.
             let _ = answers.send(answer).await;
         });
     }
 }
 
-async fn answer(app: &App, text: &str, received_at: Instant) -> ToDashboard {
-    let asker = Asker { by: "dashboard", author: "dashboard".into() };
+async fn answer(app: &App, caller: Caller, text: &str, received_at: Instant) -> ToDashboard {
+    // A page that is asked for no token has no other name.
+    let name = caller.holder().is_none().then(|| "dashboard".into());
+    let asker = Asker { by: "dashboard", given: name, caller };
     match serde_json::from_str(text) {
+        Ok(message) if !app.roster.allows(&asker.caller, dashboard_key(&message)) => {
+            let (FromDashboard::Request { request_id, .. } | FromDashboard::Stop { request_id, .. }) =
+                message;
+            refused_in_words(request_id, app.roster.why_not(&asker.caller, dashboard_key(&message)))
+        }
         Ok(FromDashboard::Stop { request_id, reason }) => {
             match app.stop(&asker, StopLaneName::Dashboard, given(reason), received_at).await {
                 Ok(to_drive) => {
@@ -126,13 +151,7 @@ async fn answer(app: &App, text: &str, received_at: Instant) -> ToDashboard {
             // Answer the request that was meant, where it can be told.
             let meant = serde_json::from_str::<serde_json::Value>(text).ok();
             let id = meant.and_then(|m| m.get("request_id")?.as_u64()).and_then(|id| u32::try_from(id).ok());
-            ToDashboard::Answer {
-                request_id: id.unwrap_or(0),
-                outcome: Outcome::Refused,
-                detail: format!("not understood: {error}"),
-                why: None,
-                to_drive_micros: None,
-            }
+            refused_in_words(id.unwrap_or(0), format!("not understood: {error}"))
         }
     }
 }
@@ -164,6 +183,11 @@ async fn ask(
 
 fn refused(request_id: u32, why: Reason) -> ToDashboard {
     ToDashboard::answer(request_id, Outcome::Refused, why, None)
+}
+
+fn refused_in_words(request_id: u32, detail: String) -> ToDashboard {
+    let outcome = Outcome::Refused;
+    ToDashboard::Answer { request_id, outcome, detail, why: None, to_drive_micros: None }
 }
 
 fn given(reason: Option<String>) -> Option<String> {

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::problem::{PROBLEM_JSON, Problem};
 use super::samples;
+use crate::access::{Who, table};
 
 /// Complete a document that has the handlers' own words.
 pub fn complete(document: &mut Value) {
@@ -24,6 +25,14 @@ pub fn complete(document: &mut Value) {
     if let Some(info) = document["info"].as_object_mut() {
         info.remove("license");
     }
+    document["components"]["securitySchemes"] = json!({
+        "token": {
+            "type": "http",
+            "scheme": "bearer",
+            "bearerFormat": "covr_<id>_<secret>",
+            "description": "A token that `covr token create` made. A server without any token asks nobody.",
+        },
+    });
     document["components"]["parameters"]["Author"] = json!({
         "name": "X-Covr-Author",
         "in": "header",
@@ -87,6 +96,7 @@ impl Operation<'_> {
                 None => operation["parameters"] = json!([author]),
             }
         }
+        self.add_roles(operation);
         for (status, words) in self.around(operation) {
             let answers = &mut operation["responses"];
             if answers.get(status).is_none() {
@@ -125,13 +135,34 @@ impl Operation<'_> {
         self.method != "get" && !READ_ONLY.contains(&self.path)
     }
 
+    /// Who may ask: what the table says, for people and for programs.
+    fn add_roles(&self, operation: &mut Value) {
+        match self.who() {
+            Some(Who::Roles(roles)) => {
+                operation["security"] = json!([{ "token": [] }]);
+                operation["x-covr-roles"] = roles.iter().map(|role| role.name()).collect();
+            }
+            Some(Who::Anybody) | None => operation["security"] = json!([]),
+        }
+    }
+
+    fn who(&self) -> Option<Who> {
+        table::who_may(&format!("{} {}", self.method.to_uppercase(), self.path))
+    }
+
     /// What the layers and extractors answer.
     fn around(&self, operation: &Value) -> Vec<(&'static str, &'static str)> {
         let is_stop = self.path == "/api/v1/stop";
         let in_api = self.path.starts_with("/api/");
         let mut answers = Vec::new();
         if !is_stop {
-            answers.push(("403", "From a page of another site, or by a host name that is not this machine"));
+            answers.push((
+                "403",
+                "Not for this role, from a page of another site, or by a host name that is not this machine",
+            ));
+        }
+        if let Some(Who::Roles(_)) = self.who() {
+            answers.push(("401", "Without a token that is in force, on a server that has tokens"));
         }
         if in_api {
             answers.push(("408", "It took longer than `server.request_timeout_secs`"));
@@ -201,6 +232,7 @@ impl Operation<'_> {
     fn problem(&self, status: u16, words: &str) -> Option<Value> {
         let kind = match status {
             400 => Problem::malformed(words, Vec::new()),
+            401 => Problem::unauthorized(words),
             403 => Problem::forbidden(words),
             404 => Problem::not_found(missing(self.path)),
             409 => Problem::refused(Reason::WaitForHoming),

@@ -18,12 +18,16 @@ use covr_wire::convention::ClientFrame;
 use covr_wire::dashboard::Client;
 use covr_wire::link::{Link, LinkFigures};
 use serde_json::json;
+use tokio::sync::OwnedSemaphorePermit;
 
+use crate::access::table::client_key;
+use crate::access::{Caller, Standing};
 use crate::app::App;
 use crate::clients::Seat;
 use crate::control::PoseSlot;
 use crate::meters::ClientMeters;
 use crate::persons::Entry;
+use crate::ws::TAKEN_BACK;
 
 /// What the client is to hear.
 #[derive(Debug)]
@@ -36,11 +40,24 @@ pub enum Reply {
     LastWords(ClientError),
 }
 
+/// What a connection holds.
+#[derive(Debug)]
+pub enum Place {
+    /// A place among the clients.
+    Seat(Seat),
+    /// A place to wait in until it has said who it is.
+    Doorstep {
+        /// Given back when dropped.
+        _permit: OwnedSemaphorePermit,
+    },
+}
+
 /// A connected client.
 pub struct Guest {
     app: Arc<App>,
     encoding: Encoding,
-    seat: Seat,
+    place: Place,
+    caller: Caller,
     gauge: AbuseGauge,
     clock: ClientClock,
     greeted: Option<Greeted>,
@@ -68,12 +85,13 @@ struct Present {
 
 impl Guest {
     /// A client that has said nothing yet.
-    pub fn new(app: Arc<App>, encoding: Encoding, seat: Seat) -> Self {
+    pub fn new(app: Arc<App>, encoding: Encoding, caller: Caller, place: Place) -> Self {
         let gauge = AbuseGauge::new(app.config.clients.persons_each);
         Self {
             app,
             encoding,
-            seat,
+            place,
+            caller,
             gauge,
             clock: ClientClock::new(),
             greeted: None,
@@ -87,9 +105,12 @@ impl Guest {
     }
 
     /// Take one frame in.
-    pub fn take_frame(&mut self, sent_as: Encoding, frame: &[u8], received: Time) -> Option<Reply> {
+    pub async fn take_frame(&mut self, sent_as: Encoding, frame: &[u8], received: Time) -> Option<Reply> {
         let done = match self.gauge.message(received) {
-            Verdict::Fine => self.understand(sent_as, frame).and_then(|message| self.take(message, received)),
+            Verdict::Fine => match self.understand(sent_as, frame) {
+                Ok(message) => self.take(message, received).await,
+                Err(error) => Err(error),
+            },
             Verdict::Warn => Err(too_many()),
             Verdict::Close => Err(too_many().fatal()),
         };
@@ -115,6 +136,12 @@ impl Guest {
         Reply::LastWords(error.fatal())
     }
 
+    /// Its last words, if its token was taken back meanwhile.
+    pub fn taken_back(&self) -> Option<Reply> {
+        let is_taken_back = self.app.roster.standing(&self.caller) == Standing::TakenBack;
+        is_taken_back.then(|| Reply::LastWords(unauthorized(TAKEN_BACK.into())))
+    }
+
     /// When it is to be shown next.
     pub fn next_show(&self) -> Time {
         self.next_show
@@ -136,7 +163,16 @@ impl Guest {
         decode(self.encoding, frame)
     }
 
-    fn take(&mut self, message: FromClient, received: Time) -> Result<Option<Reply>, ClientError> {
+    async fn take(&mut self, message: FromClient, received: Time) -> Result<Option<Reply>, ClientError> {
+        let key = client_key(&message);
+        if let FromClient::Hello(ClientHello { token: Some(token), .. }) = &message {
+            self.introduce(token.expose()).await?;
+        }
+        // A visitor in the arena is not cut off because a token ends by itself meanwhile.
+        let was_let_in = self.greeted.is_some();
+        if !was_let_in && !self.app.roster.allows(&self.caller, key) {
+            return Err(unauthorized(self.app.roster.why_not(&self.caller, key)));
+        }
         if self.greeted.is_none() && !matches!(message, FromClient::Hello(_) | FromClient::ClockPing(_)) {
             return Err(ClientError::plain(ErrorCode::HelloExpected, "the first message must be a hello"));
         }
@@ -174,6 +210,13 @@ impl Guest {
         if self.greeted.is_some() {
             return Err(ClientError::plain(ErrorCode::AlreadyGreeted, "hello was said already"));
         }
+        if let Place::Doorstep { .. } = &self.place {
+            let seat = self.app.clients.take_seat().ok_or_else(|| {
+                ClientError::plain(ErrorCode::Full, "as many VR clients as the server takes are connected")
+                    .fatal()
+            })?;
+            self.place = Place::Seat(seat);
+        }
         let settings = &self.app.config.clients;
         let room_from_tracking =
             RigidMap::from_yaw(settings.tracking_yaw_rad, settings.tracking_origin_m.into());
@@ -193,6 +236,15 @@ impl Guest {
         self.greeted = Some(Greeted { hello, frame });
         self.show(received);
         Ok(Reply::Welcome(frame, Box::new(welcome)))
+    }
+
+    /// Who it is, by the token in its hello.
+    async fn introduce(&mut self, token: &str) -> Result<(), ClientError> {
+        if self.app.roster.asks() && self.greeted.is_none() {
+            let holder = self.app.roster.by_token(token).await;
+            self.caller = holder.map(Caller::Known).map_err(|why| unauthorized(why.to_string()))?;
+        }
+        Ok(())
     }
 
     fn enter(&mut self, person: &str) -> Result<(), ClientError> {
@@ -297,7 +349,8 @@ impl Guest {
             self.pose_times.pop_front();
         }
         let link = LinkFigures::of(self.persons.values().map(|present| &present.link), now);
-        self.seat.show(Client {
+        let Place::Seat(seat) = &self.place else { return };
+        seat.show(Client {
             name: greeted.hello.name.clone(),
             convention: greeted.hello.convention.name().into(),
             poses: self.poses,
@@ -345,6 +398,10 @@ impl Drop for Guest {
             self.record("client_gone", format!("client {client} is gone"), detail);
         }
     }
+}
+
+fn unauthorized(why: String) -> ClientError {
+    ClientError::plain(ErrorCode::Unauthorized, why).fatal()
 }
 
 fn unknown_person(person: &str) -> ClientError {
