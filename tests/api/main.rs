@@ -8,6 +8,7 @@ mod contract;
 mod dashboards;
 mod guards;
 mod links;
+mod login;
 mod machine;
 mod monitoring;
 mod openapi;

@@ -47,7 +47,9 @@ async fn every_route_answers_the_roles_of_the_table_and_no_other() {
                 (false, None) => Some(401),
                 (false, Some(_)) => Some(403),
             };
-            let refused = Some(status).filter(|status| [401, 403].contains(status));
+            // Signing in is open to everybody, and refuses a wrong token: the example is one.
+            let is_sign_in = key == "POST /api/v1/login";
+            let refused = Some(status).filter(|status| [401, 403].contains(status) && !is_sign_in);
             assert_eq!(refused, expected, "{key} for {role:?}: {status}");
             assert!(operation.about["responses"].get(status.to_string()).is_some(), "{key}: {status}");
         }

@@ -8,6 +8,8 @@ use covr_tests::{HOMED, SOON};
 
 fn options(server: &TestServer) -> Visitor {
     Visitor {
+        token: None,
+        authority: None,
         trace: None,
         speed: 1.0,
         url: format!("ws://{}", server.host),

@@ -25,9 +25,24 @@ impl Dashboard {
 
     /// Connect with a token; the status of a refusal otherwise.
     pub async fn connect_with(host: &str, token: Option<&str>) -> Result<Self, u16> {
-        let mut request = format!("ws://{host}/ws/v1/dashboard").into_client_request().unwrap();
-        if let Some(token) = token {
-            request.headers_mut().insert("Authorization", format!("Bearer {token}").parse().unwrap());
+        let bearer = token.map(|token| ("Authorization", format!("Bearer {token}")));
+        Self::upgraded(&format!("{host}/ws/v1/dashboard"), bearer).await
+    }
+
+    /// Connect as a browser that is signed in.
+    pub async fn connect_with_cookie(host: &str, cookie: &str) -> Result<Self, u16> {
+        Self::upgraded(&format!("{host}/ws/v1/dashboard"), Some(("Cookie", cookie.to_owned()))).await
+    }
+
+    /// Connect to an address without its scheme.
+    pub async fn connect_to(address: &str) -> Result<Self, u16> {
+        Self::upgraded(address, None).await
+    }
+
+    async fn upgraded(address: &str, header: Option<(&'static str, String)>) -> Result<Self, u16> {
+        let mut request = format!("ws://{address}").into_client_request().unwrap();
+        if let Some((name, value)) = header {
+            request.headers_mut().insert(name, value.parse().unwrap());
         }
         match connect_async(request).await {
             Ok((socket, _)) => Ok(Self { socket }),

@@ -9,7 +9,7 @@ use covr_server::app::App;
 use covr_server::config::Config;
 use covr_server::control::Published;
 use covr_server::http::Problem;
-use covr_server::serve::{Reach, Server};
+use covr_server::serve::Server;
 use covr_server::store::StoredToken;
 use reqwest::{Client, Method, Response};
 use serde_json::Value;
@@ -57,7 +57,7 @@ impl TestServer {
     pub async fn start_in(dir: TempDir, change: impl FnOnce(&mut Config)) -> Self {
         let mut config = test_config(&dir);
         change(&mut config);
-        let server = Server::start(config, Reach::ThisMachine).await.unwrap();
+        let server = Server::start(config).await.unwrap();
         let host = server.address().to_string();
         let app = server.app().clone();
         let (end, told) = oneshot::channel();

@@ -13,11 +13,12 @@ use metrics_exporter_prometheus::PrometheusHandle;
 use serde_json::{Value, json};
 use tokio::sync::{Semaphore, watch};
 
-use crate::access::{Caller, Roster};
+use crate::access::{Caller, Change, Roster};
 use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::config::{Config, Origins};
 use crate::control::{Control, NotDelivered, NotReached, StopLaneName};
+use crate::http::Limits;
 use crate::meters;
 use crate::persons::Persons;
 use crate::recorder::{Recorder, Settled};
@@ -37,6 +38,8 @@ pub struct App {
     pub control: Control,
     /// Who may do what.
     pub roster: Arc<Roster>,
+    /// How much one address may ask.
+    pub limits: Limits,
     /// The database.
     pub store: Store,
     /// The recorder.
@@ -84,8 +87,7 @@ impl Asker {
         detail["author"] = self.author().into();
         detail["by"] = self.by.into();
         if let Some(holder) = self.caller.holder() {
-            detail["actor"] =
-                json!({ "token": holder.name, "token_id": holder.token_id, "role": holder.role });
+            detail["actor"] = holder.actor();
         }
         detail
     }
@@ -161,6 +163,25 @@ impl App {
             tracing::error!("a stop could not be stored; it will not survive a restart");
         }
         reached
+    }
+
+    /// Look into the database for tokens that were made or taken back, and record them.
+    pub async fn follow_tokens(&self) {
+        match self.roster.refresh().await {
+            Ok(changes) => changes.iter().for_each(|change| self.record_token(change)),
+            // Who was known stays known: the machine can be run without the database.
+            Err(error) => tracing::warn!(%error, "the tokens cannot be looked at"),
+        }
+    }
+
+    fn record_token(&self, change: &Change) {
+        let (kind, word, token) = match change {
+            Change::Made(token) => ("token_made", "made", token),
+            Change::Revoked(token) => ("token_revoked", "taken back", token),
+        };
+        let summary = format!("the token {} ({}) was {word}", token.name, token.role.in_words());
+        let detail = json!({ "token": token.name, "token_id": token.id, "role": token.role });
+        self.recorder.record(kind, summary, detail);
     }
 
     async fn ask_about(

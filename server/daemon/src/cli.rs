@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::cert_command::CertCommand;
 use crate::config::LogFormat;
 use crate::evaluate::Evaluate;
 use crate::explain::Explain;
@@ -43,6 +44,8 @@ pub enum Command {
     Prove(Prove),
     /// Make, list and take back the tokens that people and programs sign in with.
     Token(TokenCommand),
+    /// Make a local authority and a certificate for TLS.
+    Cert(CertCommand),
     /// Ask a running server whether it is ready; exit code 2 if it is not.
     Health(Health),
     /// Print every configuration key with its default and its meaning.
@@ -61,7 +64,7 @@ pub struct Serve {
     /// Database file, instead of server.database.
     #[arg(long)]
     pub database: Option<PathBuf>,
-    /// Let the network reach a server without roles and TLS: with the simulated machine alone.
+    /// Let the network reach a server without tokens and TLS, as server.insecure_lan = true: with the simulated machine alone.
     #[arg(long)]
     pub insecure_lan: bool,
     /// Log lines as text or JSON, instead of log.format.
@@ -82,6 +85,9 @@ pub struct Health {
     /// The server.
     #[arg(long, default_value = "http://127.0.0.1:7878")]
     pub url: String,
+    /// The authority of the server's certificate (PEM), for https.
+    #[arg(long)]
+    pub authority: Option<PathBuf>,
 }
 
 /// Play a person.
@@ -96,6 +102,12 @@ pub struct Visitor {
     /// The server.
     #[arg(long, default_value = "ws://127.0.0.1:7878")]
     pub url: String,
+    /// The token that it signs in with, where the server has tokens.
+    #[arg(long, env = "COVR_TOKEN", hide_env_values = true)]
+    pub token: Option<String>,
+    /// The authority of the server's certificate (PEM), for wss and https.
+    #[arg(long)]
+    pub authority: Option<PathBuf>,
     /// What the client calls itself and its person.
     #[arg(long, default_value = "visitor")]
     pub name: String,

@@ -55,6 +55,16 @@ pub struct Server {
     pub bind: SocketAddr,
     /// The database file.
     pub database: PathBuf,
+    /// The certificate for TLS, PEM; none: no TLS.
+    pub tls_certificate: Option<PathBuf>,
+    /// Its key, PEM.
+    pub tls_key: Option<PathBuf>,
+    /// The network may reach a server without tokens and TLS: with the simulated machine alone.
+    pub insecure_lan: bool,
+    /// Most requests of one address in a second.
+    pub requests_per_sec: usize,
+    /// Longest time for a connection's TLS handshake and for each request's head, s.
+    pub header_timeout_secs: f64,
     /// Longest time that an HTTP request may take, s.
     pub request_timeout_secs: f64,
     /// Longest time that the machine may take to come to rest at shutdown, s.
@@ -185,6 +195,11 @@ impl Default for Config {
             server: Server {
                 bind: SocketAddr::from(([127, 0, 0, 1], 7878)),
                 database: PathBuf::from("covr.sqlite"),
+                tls_certificate: None,
+                tls_key: None,
+                insecure_lan: false,
+                requests_per_sec: 200,
+                header_timeout_secs: 10.0,
                 request_timeout_secs: 10.0,
                 rest_timeout_secs: 3.0,
             },
@@ -225,6 +240,13 @@ impl Default for Config {
             links: LinkThresholds::USUAL,
             log: Log { format: LogFormat::Text, level: "info".into() },
         }
+    }
+}
+
+impl Server {
+    /// Whether it speaks TLS.
+    pub fn is_encrypted(&self) -> bool {
+        self.tls_certificate.is_some()
     }
 }
 

@@ -1,5 +1,6 @@
 //! HTTP: handlers check, convert and pass on. Every error under /api is a problem document.
 
+mod access;
 mod asyncapi;
 mod config;
 mod events;
@@ -7,6 +8,7 @@ mod gate;
 mod guard;
 mod health;
 mod input;
+mod limits;
 mod machine;
 mod openapi;
 mod priors;
@@ -20,7 +22,7 @@ use std::time::Duration;
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
-use axum::http::StatusCode;
+use axum::http::{HeaderName, HeaderValue, StatusCode, header};
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::response::IntoResponse;
 use axum::routing::get;
@@ -28,10 +30,13 @@ use covr_wire::scene::MAX_SCENE_BYTES;
 use tower::ServiceBuilder;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::request_id::{MakeRequestUuid, PropagateRequestIdLayer, SetRequestIdLayer};
+use tower_http::set_header::SetResponseHeaderLayer;
 use tower_http::timeout::TimeoutLayer;
 use tower_http::trace::TraceLayer;
 
+pub use access::{Me, Ticket};
 pub use health::Readiness;
+pub use limits::{Limits, address};
 pub use machine::{Answered, StopAcknowledged};
 pub use priors::{ObjectPreview, PriorsChanged, PriorsPreview};
 pub use problem::{PROBLEM_JSON, Problem, ProblemItem};
@@ -51,6 +56,7 @@ pub fn router(app: Arc<App>) -> Router {
                     .merge(priors::routes())
                     .merge(sessions::routes())
                     .merge(config::routes())
+                    .merge(access::routes())
                     .merge(events::routes()),
             )
             .merge(health::routes()),
@@ -60,8 +66,15 @@ pub fn router(app: Arc<App>) -> Router {
         .layer(SetRequestIdLayer::x_request_id(MakeRequestUuid))
         .layer(TraceLayer::new_for_http().make_span_with(request_span))
         .layer(PropagateRequestIdLayer::x_request_id())
+        .layer(always(header::X_CONTENT_TYPE_OPTIONS, Some("nosniff")))
+        .layer(always(header::REFERRER_POLICY, Some("no-referrer")))
+        .layer(always(header::X_FRAME_OPTIONS, Some("DENY")))
+        .layer(always(HeaderName::from_static("cross-origin-resource-policy"), Some("same-origin")))
+        .layer(always(HeaderName::from_static("cross-origin-opener-policy"), Some("same-origin")))
+        .layer(always(header::STRICT_TRANSPORT_SECURITY, app.config.server.is_encrypted().then_some(A_YEAR)))
         .layer(from_fn(problem::finish))
         .layer(from_fn_with_state(app.clone(), guard::same_host))
+        .layer(from_fn_with_state(app.clone(), limits::within_rate))
         .layer(from_fn(timing::measure))
         .layer(CatchPanicLayer::new())
         .layer(TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, time_out))
@@ -80,6 +93,11 @@ pub fn router(app: Arc<App>) -> Router {
         .layer(layers)
 }
 
+/// A header of every answer that does not have it yet.
+fn always(name: HeaderName, value: Option<&'static str>) -> SetResponseHeaderLayer<Option<HeaderValue>> {
+    SetResponseHeaderLayer::if_not_present(name, value.map(HeaderValue::from_static))
+}
+
 async fn nothing_here() -> StatusCode {
     StatusCode::NOT_FOUND
 }
@@ -88,3 +106,5 @@ fn request_span(request: &axum::extract::Request) -> tracing::Span {
     let id = request.headers().get("x-request-id").and_then(|id| id.to_str().ok()).unwrap_or_default();
     tracing::debug_span!("http", method = %request.method(), path = request.uri().path(), id)
 }
+
+const A_YEAR: &str = "max-age=31536000";

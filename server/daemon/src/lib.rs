@@ -8,6 +8,7 @@
 
 pub mod access;
 pub mod app;
+pub mod cert_command;
 pub mod cli;
 pub mod clients;
 pub mod clock;
@@ -17,6 +18,7 @@ pub mod evaluate;
 pub mod explain;
 pub mod fit;
 pub mod http;
+pub mod listen;
 pub mod live;
 pub mod logs;
 pub mod meters;

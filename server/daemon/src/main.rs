@@ -9,8 +9,9 @@ use clap::Parser;
 use covr_server::cli::{Check, Cli, Command, Health, Serve, Visitor};
 use covr_server::config::{self, Config};
 use covr_server::prove::Prove;
-use covr_server::serve::{Reach, Server, stop_at_signal, stop_signal, told_by_signal};
-use covr_server::{evaluate, explain, fit, logs, prove, token_command, visitor};
+use covr_server::serve::{Server, stop_at_signal, stop_signal, told_by_signal};
+use covr_server::visitor::credentials::Credentials;
+use covr_server::{cert_command, evaluate, explain, fit, logs, prove, token_command, visitor};
 use covr_wire::scene::parse_scene;
 
 fn main() -> ExitCode {
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
         Command::Token(options) => runtime()
             .and_then(|runtime| runtime.block_on(token_command::run(options)))
             .and_then(|words| print(&words)),
+        Command::Cert(options) => cert_command::run(&options).and_then(|words| print(&words)),
         Command::Health(options) => health(&options),
         Command::Config => print(&config::reference(&Config::default())),
     };
@@ -42,13 +44,14 @@ fn serve(options: Serve) -> anyhow::Result<()> {
     let mut loaded = config::load(options.config.as_deref(), std::env::vars())?;
     loaded.set_by_command_line("server.bind", options.bind, |c| &mut c.server.bind);
     loaded.set_by_command_line("server.database", options.database, |c| &mut c.server.database);
+    let insecure_lan = options.insecure_lan.then_some(true);
+    loaded.set_by_command_line("server.insecure_lan", insecure_lan, |c| &mut c.server.insecure_lan);
     loaded.set_by_command_line("log.format", options.log_format, |c| &mut c.log.format);
     let _logs = logs::start(&loaded.config.log)?;
-    let reach = if options.insecure_lan { Reach::InsecureLan } else { Reach::ThisMachine };
     runtime()?.block_on(async {
         // Before anybody can know of the server: without a listener the signal would end the process.
         let presses = stop_signal()?;
-        let server = Server::start(loaded, reach).await?;
+        let server = Server::start(loaded).await?;
         tokio::spawn(stop_at_signal(server.app().clone(), presses));
         server.run_until(told_by_signal()).await
     })
@@ -66,8 +69,9 @@ fn visit(options: Visitor) -> anyhow::Result<()> {
 
 fn health(options: &Health) -> anyhow::Result<()> {
     let url = format!("{}/readyz", options.url.trim_end_matches('/'));
+    let credentials = Credentials::new(None, options.authority.as_deref())?;
     let answer = runtime()?.block_on(async {
-        let client = reqwest::Client::builder().timeout(LONGEST_HEALTH_CALL).build()?;
+        let client = credentials.http().timeout(LONGEST_HEALTH_CALL).build()?;
         client.get(&url).send().await?.error_for_status()
     });
     answer.with_context(|| format!("{url}: not ready"))?;

@@ -5,8 +5,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use anyhow::{Context, bail, ensure};
-use axum::serve::ListenerExt;
+use anyhow::{Context, bail};
 use covr_engine::frames::Floor;
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::safety::separation::KeptFrom;
@@ -18,19 +17,19 @@ use covr_gantry::sim::parameters::MachineParameters;
 use covr_wire::dashboard::MachineShape;
 use covr_wire::reason::last_run;
 use covr_wire::scene::parse_scene;
-use serde_json::json;
 use tokio::net::TcpListener;
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::{Semaphore, watch};
-use tokio::task::JoinHandle;
 use tokio::time::MissedTickBehavior;
 
-use crate::access::{Caller, Change, Roster};
+use crate::access::{Caller, Roster};
 use crate::app::{App, Asker};
 use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::config::{Config, Loaded, MachineKind};
 use crate::control::{Control, Ended, Setup, StopLaneName};
+use crate::http::Limits;
+use crate::listen::{Listening, check_reach, check_tokens, listen};
 use crate::persons::Persons;
 use crate::recorder::{Desk, Recorder};
 use crate::recording::{Booth, Recording};
@@ -43,35 +42,22 @@ pub struct Server {
     app: Arc<App>,
     address: SocketAddr,
     closing: watch::Sender<Option<String>>,
-    http: JoinHandle<std::io::Result<()>>,
-}
-
-/// Whether the network may reach the server.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Reach {
-    /// Programs on this machine alone.
-    ThisMachine,
-    /// Everybody on the network, without roles or TLS: for the simulated machine alone.
-    InsecureLan,
+    http: Listening,
 }
 
 impl Server {
     /// Start: store, control thread, sockets. The machine starts disarmed, or latched if the last run ended so.
-    pub async fn start(config: impl Into<Loaded>, reach: Reach) -> anyhow::Result<Self> {
+    pub async fn start(config: impl Into<Loaded>) -> anyhow::Result<Self> {
         let loaded = config.into();
         let gantry = machine(&loaded.config)?;
-        Self::start_with(loaded, reach, gantry).await
+        Self::start_with(loaded, gantry).await
     }
 
     /// The same with a machine of the caller's: for measurements and tests. Its travel and limits must be the
     /// configuration's.
-    pub async fn start_with(
-        config: impl Into<Loaded>,
-        reach: Reach,
-        gantry: Box<dyn Gantry>,
-    ) -> anyhow::Result<Self> {
+    pub async fn start_with(config: impl Into<Loaded>, gantry: Box<dyn Gantry>) -> anyhow::Result<Self> {
         let Loaded { config, origins } = config.into();
-        check_reach(&config, reach)?;
+        check_reach(&config)?;
         let intention = config.people.intention()?;
         let prometheus = meters::install()?;
         let clock = Clock::started_now();
@@ -89,6 +75,7 @@ impl Server {
         }
         let login_lasts = Duration::from_secs_f64(config.access.login_hours * SECS_AN_HOUR);
         let roster = Arc::new(Roster::open(store.clone(), login_lasts).await.context("tokens")?);
+        check_tokens(&config, &roster)?;
         let active = active_scene(&store, left_over.active_scene).await?;
         let priors = store.priors_in_force().await?;
 
@@ -141,6 +128,7 @@ impl Server {
             .await
             .with_context(|| format!("cannot listen on {}", config.server.bind))?;
         let address = listener.local_addr()?;
+        let limits = Limits::new(config.server.requests_per_sec);
         let (dashboards, clients_most) = (config.dashboards.most, config.clients.most);
         let closing = watch::Sender::new(None);
         let frames = watch::Sender::new(Arc::from(""));
@@ -150,6 +138,7 @@ impl Server {
             clock,
             control,
             roster,
+            limits,
             store,
             recorder,
             recording,
@@ -164,24 +153,11 @@ impl Server {
         });
         tokio::spawn(live::publish(app.clone(), frames));
         tokio::spawn(follow_tokens(app.clone()));
-        // Without Nagle's delay: a column's position that waits for the one before is old.
-        let listener = listener.tap_io(|connection| {
-            if let Err(why) = connection.set_nodelay(true) {
-                tracing::debug!(%why, "a connection keeps Nagle's delay");
-            }
-        });
-        let router = http::router(app.clone());
-        let mut closed = closing.subscribe();
-        let http = tokio::spawn(async move {
-            axum::serve(listener, router)
-                .with_graceful_shutdown(async move {
-                    let _ = closed.wait_for(Option::is_some).await;
-                })
-                .await
-        });
+        let http = listen(listener, &app.config, http::router(app.clone())).await?;
         tracing::info!(
             version = env!("CARGO_PKG_VERSION"),
-            "covr serves; the dashboard is at http://{address}"
+            "covr serves; the dashboard is at {}://{address}",
+            if app.config.server.is_encrypted() { "https" } else { "http" },
         );
         Ok(Self { app, address, closing, http })
     }
@@ -215,7 +191,7 @@ impl Server {
                     Ended::AsAsked => bail!("the control thread ended unasked; the machine was told to stop"),
                 }
             }
-            ended = &mut self.http => {
+            ended = &mut self.http.http => {
                 self.bring_to_rest().await;
                 self.app.control.quit();
                 self.close("the HTTP server ended").await;
@@ -248,9 +224,12 @@ impl Server {
 
     async fn close(&mut self, reason: &str) {
         self.closing.send_replace(Some(reason.into()));
-        if !self.http.is_finished() && tokio::time::timeout(LONGEST_CLOSE, &mut self.http).await.is_err() {
+        self.http.close(LONGEST_CLOSE);
+        if !self.http.http.is_finished()
+            && tokio::time::timeout(LONGEST_CLOSE, &mut self.http.http).await.is_err()
+        {
             tracing::warn!("some connections did not close in time");
-            self.http.abort();
+            self.http.http.abort();
         }
         self.app.recorder.end().await;
         self.app.recording.finish().await;
@@ -300,40 +279,9 @@ async fn follow_tokens(app: Arc<App>) {
             _ = due.tick() => {}
             _ = closing.changed() => return,
         }
-        match app.roster.refresh().await {
-            Ok(changes) => changes.iter().for_each(|change| record_token(&app, change)),
-            // Who was known stays known: the machine can be run without the database.
-            Err(error) => tracing::warn!(%error, "the tokens cannot be looked at"),
-        }
+        app.follow_tokens().await;
+        app.limits.forget();
     }
-}
-
-fn record_token(app: &App, change: &Change) {
-    let (kind, word, token) = match change {
-        Change::Made(token) => ("token_made", "made", token),
-        Change::Revoked(token) => ("token_revoked", "taken back", token),
-    };
-    let summary = format!("the token {} ({}) was {word}", token.name, token.role.in_words());
-    let detail = json!({ "token": token.name, "token_id": token.id, "role": token.role });
-    app.recorder.record(kind, summary, detail);
-}
-
-fn check_reach(config: &Config, reach: Reach) -> anyhow::Result<()> {
-    let bind = config.server.bind;
-    if bind.ip().is_loopback() {
-        return Ok(());
-    }
-    ensure!(
-        reach == Reach::InsecureLan,
-        "server.bind: {bind} is reachable from the network, and the server has no roles and no TLS yet; \
-         use 127.0.0.1, or say --insecure-lan (simulated machine only)"
-    );
-    ensure!(
-        config.machine.kind == MachineKind::Simulated,
-        "--insecure-lan is for the simulated machine alone, not for \"{}\"",
-        config.machine.kind.name()
-    );
-    Ok(())
 }
 
 fn machine(config: &Config) -> anyhow::Result<Box<dyn Gantry>> {

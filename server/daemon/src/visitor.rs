@@ -3,6 +3,7 @@
 //! It knows the server as any headset does: by its protocol and its public HTTP API.
 
 mod api;
+pub mod credentials;
 mod headset;
 mod recorded;
 
@@ -16,12 +17,14 @@ use covr_wire::scene::{SceneDocument, build_scene};
 
 use crate::cli::Visitor;
 use api::Api;
+use credentials::Credentials;
 use headset::Headset;
 use recorded::Program;
 
 /// Play until the connection is lost; with `--wait-for-server`, then again.
 pub async fn run(options: Visitor) -> anyhow::Result<()> {
-    let api = Api::new(&options.url)?;
+    let credentials = Credentials::new(options.token.as_deref(), options.authority.as_deref())?;
+    let api = Api::new(&options.url, credentials)?;
     let mut program =
         options.trace.as_deref().map(|path| Program::open(path, options.trial.as_deref())).transpose()?;
     loop {
@@ -44,7 +47,7 @@ async fn visit(
     program: Option<&mut Program>,
 ) -> Result<std::convert::Infallible, anyhow::Error> {
     let ready = options.arm && api.home_simulated_machine().await?;
-    let mut headset = Headset::connect(&options.url, &options.name).await?;
+    let mut headset = Headset::connect(&options.url, &options.name, api.credentials()).await?;
     if ready {
         api.arm().await?;
     }

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use covr_server::config;
-use covr_server::http::{Answered, PriorsPreview, Problem, SceneStored, StopAcknowledged};
+use covr_server::http::{Answered, Me, PriorsPreview, Problem, SceneStored, StopAcknowledged};
 use ts_rs::{Config, TS};
 
 #[test]
@@ -35,6 +35,7 @@ fn generate() -> BTreeMap<String, String> {
     StopAcknowledged::export_all(&config).expect("a stop");
     SceneStored::export_all(&config).expect("a stored scene");
     Problem::export_all(&config).expect("a problem");
+    Me::export_all(&config).expect("who I am");
     PriorsPreview::export_all(&config).expect("a preview");
     let mut files = read(out.path());
     files.insert("configKeys.json".into(), config_keys());

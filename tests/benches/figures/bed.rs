@@ -14,7 +14,7 @@ use covr_gantry::contract::{Gantry, NotTaken, Reading};
 use covr_gantry::ideal::IdealMachine;
 use covr_server::app::App;
 use covr_server::config::Config;
-use covr_server::serve::{Reach, Server};
+use covr_server::serve::Server;
 use tempfile::TempDir;
 use tokio::sync::oneshot;
 use tokio::task::JoinHandle;
@@ -65,7 +65,7 @@ impl Bed {
         let (sender, ticks) = mpsc::channel();
         let machine = IdealMachine::new(machine.limits(), machine.travel(), parked);
         let noting = Noting { machine, read: Instant::now(), ticks: sender };
-        let server = Server::start_with(config, Reach::ThisMachine, Box::new(noting)).await.unwrap();
+        let server = Server::start_with(config, Box::new(noting)).await.unwrap();
         let host = server.address().to_string();
         let app = server.app().clone();
         let (end, told) = oneshot::channel();

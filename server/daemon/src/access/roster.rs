@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
 use arc_swap::ArcSwap;
+use serde_json::{Value, json};
 use tokio::sync::{Semaphore, watch};
 
 use super::table::{self, Who};
@@ -354,9 +355,20 @@ impl Caller {
 }
 
 impl Holder {
+    /// Who acted, for the record.
+    pub fn actor(&self) -> Value {
+        json!({ "token": self.name, "token_id": self.token_id, "role": self.role })
+    }
+
     /// They came with a cookie, which a browser sends unasked.
     pub fn came_by_cookie(&self) -> bool {
         self.login.is_some()
+    }
+
+    /// What a page proves with that it was this server's own that asked; none without a cookie. Another site can make a
+    /// browser send the cookie, and cannot read this.
+    pub fn csrf(&self) -> Option<String> {
+        self.login.map(|hash| hex(&fingerprint(&format!("csrf {}", hex(&hash)))))
     }
 }
 

@@ -84,6 +84,9 @@ const DESIGN: Who = Who::Roles(&[Designer, GameMaster, Administrator]);
 /// Whoever may change what the machine does.
 const RUN: Who = Who::Roles(&[GameMaster, Administrator]);
 
+/// Whoever may say who may.
+const ADMINISTER: Who = Who::Roles(&[Administrator]);
+
 const TABLE: &[(&str, Who)] = &[
     ("POST /api/v1/stop", Who::Anybody),
     ("dashboard stop", Who::Anybody),
@@ -93,6 +96,10 @@ const TABLE: &[(&str, Who)] = &[
     ("GET /api/v1/openapi.json", Who::Anybody),
     ("GET /api/v1/asyncapi.json", Who::Anybody),
     ("GET /api/v1/scene.schema.json", Who::Anybody),
+    ("GET /api/v1/me", Who::Anybody),
+    ("POST /api/v1/login", Who::Anybody),
+    ("POST /api/v1/logout", Who::Anybody),
+    ("POST /api/v1/tickets", SEE),
     ("GET /api/v1/state", SEE),
     ("GET /api/v1/scenes", SEE),
     ("GET /api/v1/scenes/{id}", SEE),
@@ -130,6 +137,8 @@ const TABLE: &[(&str, Who)] = &[
     ("POST /api/v1/reset", RUN),
     ("POST /api/v1/persons/{id}/confirm", RUN),
     ("POST /api/v1/persons/{id}/left", RUN),
+    ("GET /api/v1/tokens", ADMINISTER),
+    ("DELETE /api/v1/tokens/{id}", ADMINISTER),
     ("dashboard home", RUN),
     ("dashboard arm", RUN),
     ("dashboard disarm", RUN),

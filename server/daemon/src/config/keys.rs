@@ -55,13 +55,38 @@ pub fn all() -> Vec<Key> {
     let mut keys = vec![
         Key::new(
             "server.bind",
-            "Where the server listens. Another address than this machine's own needs --insecure-lan.",
+            "Where the server listens. Another address than this machine's own needs TLS and a token, or server.insecure_lan.",
             Place::Address(|c| &mut c.server.bind),
         ),
         Key::new(
             "server.database",
             "The SQLite file of scenes, sessions, events and prior changes; made when missing.",
             Place::Path(|c| &mut c.server.database),
+        ),
+        Key::new(
+            "server.tls_certificate",
+            "The certificate for TLS, a PEM file; covr cert makes one. Empty: no TLS.",
+            Place::PathOrNone(|c| &mut c.server.tls_certificate),
+        ),
+        Key::new(
+            "server.tls_key",
+            "The certificate's key, a PEM file.",
+            Place::PathOrNone(|c| &mut c.server.tls_key),
+        ),
+        Key::new(
+            "server.insecure_lan",
+            "Let the network reach a server without tokens or TLS: with the simulated machine alone.",
+            Place::Switch(|c| &mut c.server.insecure_lan),
+        ),
+        Key::new(
+            "server.requests_per_sec",
+            "Most requests of one address in a second, five times as many in a burst. The stop is never counted.",
+            Place::Whole(1..=100_000, |c| &mut c.server.requests_per_sec),
+        ),
+        Key::new(
+            "server.header_timeout_secs",
+            "Longest time for a connection's TLS handshake, and for the head of each request, s. Also how long an idle connection is kept.",
+            Place::Number(0.1..=60.0, |c| &mut c.server.header_timeout_secs),
         ),
         Key::new(
             "server.request_timeout_secs",

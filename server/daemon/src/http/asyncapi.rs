@@ -141,6 +141,7 @@ fn channels(config: &Config) -> Value {
         let mut all = vec![
             json!({ "status": 401, "when": "a token is shown that is not in force; on `/ws/v1/dashboard` also: none is shown, on a server that has tokens" }),
             json!({ "status": 403, "when": "the token's role may not connect here, the page comes from another site, or the host is not this machine" }),
+            json!({ "status": 429, "when": "the address asks more often than `server.requests_per_sec`" }),
             json!({ "status": 503, "when": "as many are connected as the server takes" }),
         ];
         all.extend(others.as_array().cloned().unwrap_or_default());
@@ -258,13 +259,14 @@ const CLIENT_ROLES: &str = "\
 ### Tokens
 
 Where the server has tokens, a VR client needs one of role `client` (or `game_master`, `administrator`): as `token` of its `hello`, which every
-engine and every page can do, or as `Authorization: Bearer` of the upgrade. Without one the `hello` is answered by `unauthorized`.
+engine and every page can do, or as `Authorization: Bearer` of the upgrade, or by a one-time `?ticket=` of `POST /api/v1/tickets`. Without one the `hello` is answered by `unauthorized`.
 A visit is not cut off when the token ends by itself; it is when the token is taken back.";
 
 const DASHBOARD_ROLES: &str = "\
 ### Roles
 
-Where the server has tokens, the upgrade needs one as `Authorization: Bearer`. `observer`, `designer`, `game_master` and `administrator` may look on, and
+Where the server has tokens, the upgrade needs one as `Authorization: Bearer`, the cookie of a page that is signed in, or a one-time `?ticket=` of
+`POST /api/v1/tickets`. `observer`, `designer`, `game_master` and `administrator` may look on, and
 each of them may `stop`, also when the token has ended meanwhile. Every `request` is for `game_master` and `administrator`: to others it is
 answered as refused.";
 

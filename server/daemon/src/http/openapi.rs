@@ -33,7 +33,8 @@ pub struct Document(Arc<str>);
             not here is answered 404, a method that a path does not take 405, both as problems.\n\n\
             A browser's page must come from this server: what another origin asks is refused (403), the stop alone is open to \
             everybody. Programs send no `Origin`. A server that listens on this machine alone takes only its names as host.\n\n\
-            Where tokens exist (`covr token create`), whoever asks sends one as `Authorization: Bearer`. Its role must be among the \
+            Where tokens exist (`covr token create`), whoever asks sends one as `Authorization: Bearer`; a browser signs in at \
+            `/api/v1/login` and sends what `/api/v1/me` gives it as `X-Covr-Csrf` with everything that is no GET. The role must be among the \
             operation's `x-covr-roles`: without a token in force the answer is 401, with another role 403. Operations without roles, \
             the stop above all, are open to everybody. A server without any token asks nobody.\n\n\
             What changes something takes its author from `X-Covr-Author`; the token's name and role are recorded beside it. WebSockets are described at `/api/v1/asyncapi.json`."
@@ -43,6 +44,7 @@ pub struct Document(Arc<str>);
         (name = "scenes", description = "Scenes and their versions"),
         (name = "priors", description = "The game master's priors"),
         (name = "record", description = "Sessions and events"),
+        (name = "access", description = "Who am I, signing in and out, tickets and tokens"),
         (name = "config", description = "The configuration in force"),
         (name = "contract", description = "What describes the server, and its WebSockets"),
         (name = "health", description = "Probes and metrics")

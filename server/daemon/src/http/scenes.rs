@@ -83,6 +83,7 @@ async fn list(State(app): State<Arc<App>>) -> Result<Json<Vec<SceneSummary>>, Pr
 async fn add(State(app): State<Arc<App>>, asker: Asker, body: Bytes) -> Result<Response, Problem> {
     let (document, _) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
     let id = app.store.add_scene(&document, asker.author()).await?;
+    record_stored(&app, &asker, id, 1, &document.name);
     let place = [(header::LOCATION, format!("/api/v1/scenes/{id}"))];
     Ok((StatusCode::CREATED, place, Json(SceneStored { id, version: 1 })).into_response())
 }
@@ -147,6 +148,7 @@ async fn replace(
         .add_scene_version(id_number, &document, asker.author())
         .await?
         .ok_or_else(|| no_scene(&id, None))?;
+    record_stored(&app, &asker, id_number, version, &document.name);
     Ok(Json(SceneStored { id: id_number, version }))
 }
 
@@ -182,6 +184,12 @@ async fn activate(
     responses((status = 200, description = "JSON Schema, draft 2020-12", content_type = "application/schema+json")))]
 async fn schema() -> Response {
     ([(header::CONTENT_TYPE, "application/schema+json")], scene_schema().to_string()).into_response()
+}
+
+fn record_stored(app: &App, asker: &Asker, id: i64, version: i64, name: &str) {
+    let summary = format!("{asker} stored \"{name}\" (scene {id}, version {version})");
+    let detail = json!({ "scene": id, "version": version, "name": name });
+    app.recorder.record("scene_stored", summary, asker.sign(detail));
 }
 
 /// What is not JSON at all is malformed; what is JSON but no scene is invalid.

@@ -10,6 +10,7 @@ use futures_util::StreamExt;
 use reqwest::{Client, RequestBuilder, Response};
 use tokio::time::Instant;
 
+use super::credentials::Credentials;
 use crate::http::{Problem, SceneStored};
 
 /// The server's HTTP side.
@@ -17,17 +18,25 @@ pub struct Api {
     http: Client,
     base: String,
     sockets: String,
+    credentials: Credentials,
 }
 
 impl Api {
-    /// Of the server at this `ws://` address.
-    pub fn new(url: &str) -> anyhow::Result<Self> {
+    /// Of the server at this `ws://` or `wss://` address.
+    pub fn new(url: &str, credentials: Credentials) -> anyhow::Result<Self> {
         let sockets = url.trim_end_matches('/').to_owned();
-        let host = sockets
-            .strip_prefix("ws://")
-            .with_context(|| format!("--url: found {url}, expected ws://HOST:PORT"))?;
-        let http = Client::builder().timeout(LONGEST_CALL).build()?;
-        Ok(Self { http, base: format!("http://{host}"), sockets })
+        let base = match sockets.split_once("://") {
+            Some(("ws", host)) => format!("http://{host}"),
+            Some(("wss", host)) => format!("https://{host}"),
+            _ => bail!("--url: found {url}, expected ws://HOST:PORT or wss://HOST:PORT"),
+        };
+        let http = credentials.http().timeout(LONGEST_CALL).build()?;
+        Ok(Self { http, base, sockets, credentials })
+    }
+
+    /// What it shows and trusts.
+    pub fn credentials(&self) -> &Credentials {
+        &self.credentials
     }
 
     /// Wait until the server answers, for ever.
@@ -114,8 +123,8 @@ impl Api {
 
     /// The machine's name, as the server tells its dashboards.
     async fn machine(&self) -> anyhow::Result<String> {
-        let (mut socket, _) =
-            tokio_tungstenite::connect_async(format!("{}/ws/v1/dashboard", self.sockets)).await?;
+        let request = self.credentials.request(&format!("{}/ws/v1/dashboard", self.sockets))?;
+        let mut socket = self.credentials.connect(request).await?;
         let first = tokio::time::timeout(LONGEST_CALL, socket.next())
             .await?
             .context("the dashboard socket closed")??;

@@ -11,11 +11,10 @@ use covr_wire::client::{
 use covr_wire::convention::ClientFrame;
 use covr_wire::scene::SceneDocument;
 use futures_util::{SinkExt, StreamExt};
-use tokio::net::TcpStream;
 use tokio_tungstenite::tungstenite::Message;
-use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::http::header::SEC_WEBSOCKET_PROTOCOL;
-use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async_with_config};
+
+use super::credentials::{Credentials, Socket};
 
 /// The connection was lost.
 #[derive(Debug, thiserror::Error)]
@@ -24,7 +23,7 @@ pub struct Lost(String);
 
 /// A connected headset.
 pub struct Headset {
-    socket: WebSocketStream<MaybeTlsStream<TcpStream>>,
+    socket: Socket,
     started: Instant,
     frame: ClientFrame,
     scene: Option<Box<ActiveScene>>,
@@ -36,12 +35,10 @@ pub struct Headset {
 
 impl Headset {
     /// Connect, say hello, and wait for the welcome.
-    pub async fn connect(url: &str, name: &str) -> anyhow::Result<Self> {
-        let mut request = format!("{}/ws/v1/client", url.trim_end_matches('/')).into_client_request()?;
+    pub async fn connect(url: &str, name: &str, credentials: &Credentials) -> anyhow::Result<Self> {
+        let mut request = credentials.request(&format!("{}/ws/v1/client", url.trim_end_matches('/')))?;
         request.headers_mut().insert(SEC_WEBSOCKET_PROTOCOL, JSON_SUBPROTOCOL.parse()?);
-        // Without Nagle's delay: a pose that waits for the one before is old.
-        let connected = connect_async_with_config(request, None, true).await;
-        let (socket, _) = connected.map_err(|why| Lost(why.to_string()))?;
+        let socket = credentials.connect(request).await.map_err(|why| Lost(why.to_string()))?;
         let mut headset = Self {
             socket,
             started: Instant::now(),

@@ -3,11 +3,12 @@
 
 mod guest;
 
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade, close_code};
-use axum::extract::{Extension, State};
+use axum::extract::{ConnectInfo, Extension, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use covr_engine::time::{Span, Time};
@@ -18,7 +19,7 @@ use futures_util::stream::{SplitSink, SplitStream};
 use tokio::sync::mpsc;
 use tokio::time::{Instant, timeout_at};
 
-use self::guest::{Guest, Place, Reply};
+use self::guest::{Guest, Newcomer, Place, Reply};
 use super::{Gone, close, send, why_closing};
 use crate::access::Caller;
 use crate::app::App;
@@ -27,6 +28,7 @@ use crate::app::App;
 pub async fn upgrade(
     State(app): State<Arc<App>>,
     Extension(caller): Extension<Caller>,
+    ConnectInfo(peer): ConnectInfo<SocketAddr>,
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response {
@@ -60,13 +62,13 @@ pub async fn upgrade(
     };
     upgrade
         .max_message_size(MOST_READ_BYTES)
-        .on_upgrade(move |socket| serve(app, socket, encoding, caller, place))
+        .on_upgrade(move |socket| serve(app, socket, encoding, Newcomer { caller, peer: peer.ip(), place }))
 }
 
-async fn serve(app: Arc<App>, socket: WebSocket, encoding: Encoding, caller: Caller, place: Place) {
+async fn serve(app: Arc<App>, socket: WebSocket, encoding: Encoding, newcomer: Newcomer) {
     let (sink, stream) = socket.split();
     let (replies, replies_out) = mpsc::channel(REPLY_QUEUE);
-    let guest = Guest::new(app.clone(), encoding, caller, place);
+    let guest = Guest::new(app.clone(), encoding, newcomer);
     let writer = write(app.clone(), sink, encoding, replies_out);
     tokio::pin!(writer);
     tokio::select! {

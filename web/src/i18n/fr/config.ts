@@ -1,9 +1,15 @@
 /** Sens des clés de configuration ; en anglais, c’est le serveur qui le dit. */
 export const config: Readonly<Record<string, string>> = {
-  "server.bind": "Où le serveur écoute. Une autre adresse que celle de cette machine demande --insecure-lan.",
+  "server.bind": "Où le serveur écoute. Une autre adresse que celle de cette machine demande TLS et un jeton, ou server.insecure_lan.",
   "server.database": "Le fichier SQLite des scènes, séances, événements et changements d’a priori ; créé s’il manque.",
+  "server.tls_certificate": "Le certificat pour TLS, un fichier PEM ; covr cert en fait un. Vide : sans TLS.",
+  "server.tls_key": "La clé du certificat, un fichier PEM.",
+  "server.insecure_lan": "Laisser le réseau atteindre un serveur sans jetons ni TLS : avec la machine simulée seulement.",
+  "server.requests_per_sec": "Plus grand nombre de requêtes d’une adresse par seconde, cinq fois plus en rafale. L’arrêt n’est jamais compté.",
+  "server.header_timeout_secs": "Durée maximale de l’ouverture TLS d’une connexion et de l’en-tête de chaque requête, s. Aussi la durée de vie d’une connexion inactive.",
   "server.request_timeout_secs": "Durée maximale d’une requête HTTP, s.",
   "server.rest_timeout_secs": "Temps maximal laissé à la machine pour s’immobiliser à l’arrêt du serveur, s.",
+  "access.login_hours": "Combien de temps un navigateur reste connecté, heures. Ensuite la page montre encore ce qui se passe, peut arrêter, et demande le jeton.",
   "control.rate_hz": "Cadence de la boucle de commande, Hz.",
   "control.publish_hz": "États publiés aux tableaux de bord et aux clients, Hz.",
   "control.request_queue": "Demandes qui peuvent attendre la boucle de commande avant que la suivante soit refusée. L’arrêt a ses propres voies.",

@@ -4,6 +4,7 @@
 use covr_wire::reason::Reason;
 use serde_json::{Map, Value, json};
 
+use super::super::access::LOGIN_COOKIE;
 use super::super::problem::{PROBLEM_JSON, Problem};
 use super::samples;
 use crate::access::{Who, table};
@@ -31,6 +32,18 @@ pub fn complete(document: &mut Value) {
             "scheme": "bearer",
             "bearerFormat": "covr_<id>_<secret>",
             "description": "A token that `covr token create` made. A server without any token asks nobody.",
+        },
+        "login": {
+            "type": "apiKey",
+            "in": "cookie",
+            "name": LOGIN_COOKIE,
+            "description": "Set by `POST /api/v1/login`; no script can read it.",
+        },
+        "csrf": {
+            "type": "apiKey",
+            "in": "header",
+            "name": "X-Covr-Csrf",
+            "description": "With the cookie, for everything that is no GET: `csrf` of `GET /api/v1/me`.",
         },
     });
     document["components"]["parameters"]["Author"] = json!({
@@ -60,7 +73,14 @@ fn by_hand() -> Map<String, Value> {
         json!({ "get": {
             "tags": ["contract"],
             "summary": what,
-            "description": "A WebSocket; its messages are described at `/api/v1/asyncapi.json`. Refusals are plain text.",
+            "description": "A WebSocket; its messages are described at `/api/v1/asyncapi.json`.",
+            "parameters": [{
+                "name": "ticket",
+                "in": "query",
+                "required": false,
+                "description": "From `POST /api/v1/tickets`, for those who can send no header and no cookie. Good once, for 30 s.",
+                "schema": { "type": "string" },
+            }],
             "responses": {
                 "101": { "description": "The connection is a WebSocket now" },
                 "400": { "description": refused },
@@ -139,7 +159,7 @@ impl Operation<'_> {
     fn add_roles(&self, operation: &mut Value) {
         match self.who() {
             Some(Who::Roles(roles)) => {
-                operation["security"] = json!([{ "token": [] }]);
+                operation["security"] = json!([{ "token": [] }, { "login": [], "csrf": [] }]);
                 operation["x-covr-roles"] = roles.iter().map(|role| role.name()).collect();
             }
             Some(Who::Anybody) | None => operation["security"] = json!([]),
@@ -161,8 +181,13 @@ impl Operation<'_> {
                 "Not for this role, from a page of another site, or by a host name that is not this machine",
             ));
         }
-        if let Some(Who::Roles(_)) = self.who() {
+        if self.path == "/ws/v1/client" {
+            answers.push(("401", "With a token or a ticket that is not in force"));
+        } else if let Some(Who::Roles(_)) = self.who() {
             answers.push(("401", "Without a token that is in force, on a server that has tokens"));
+        }
+        if !is_stop {
+            answers.push(("429", "This address asks more often than `server.requests_per_sec`, or has shown many tokens that are not known; `Retry-After` says when to go on"));
         }
         if in_api {
             answers.push(("408", "It took longer than `server.request_timeout_secs`"));
@@ -172,7 +197,11 @@ impl Operation<'_> {
             answers.push(("400", "Not JSON, or not the fields that are due"));
             answers.push(("413", "The body is larger than 4 MiB"));
         }
-        if operation["parameters"].as_array().is_some_and(|all| all.iter().any(|one| one["in"] == "query")) {
+        if in_api
+            && operation["parameters"]
+                .as_array()
+                .is_some_and(|all| all.iter().any(|one| one["in"] == "query"))
+        {
             answers.push(("400", "A query parameter is not of its type"));
         }
         if self.takes_author() && !is_stop {
@@ -237,6 +266,7 @@ impl Operation<'_> {
             404 => Problem::not_found(missing(self.path)),
             409 => Problem::refused(Reason::WaitForHoming),
             422 => Problem::invalid(words, vec![samples::problem_item()]),
+            429 => Problem::too_many(words),
             503 => Problem::unavailable(Reason::Busy),
             other => Problem::of_status(axum::http::StatusCode::from_u16(other).ok()?),
         };
@@ -256,8 +286,8 @@ fn missing(path: &str) -> Reason {
 }
 
 const METHODS: [&str; 5] = ["get", "put", "post", "patch", "delete"];
-/// They are no GET because they have a body.
-const READ_ONLY: [&str; 2] = ["/api/v1/scenes/check", "/api/v1/priors/preview"];
+/// They are no GET because they have a body, or give something away.
+const READ_ONLY: [&str; 3] = ["/api/v1/scenes/check", "/api/v1/priors/preview", "/api/v1/tickets"];
 /// What the handlers say of a body that need not be there.
 const MAY_BE_EMPTY: &str = "May be empty";
 const PROBLEM_SCHEMA: &str = "#/components/schemas/Problem";

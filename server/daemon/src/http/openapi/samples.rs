@@ -6,8 +6,10 @@ use covr_wire::records::{RecordedFrame, SceneInForce, Session, SessionDetail};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::super::{Answered, PriorsChanged, ProblemItem, Readiness};
+use super::super::access::TokenRow;
+use super::super::{Answered, PriorsChanged, ProblemItem, Readiness, Ticket};
 use super::super::{SceneActivated, SceneChecked, SceneStored, StopAcknowledged};
+use crate::access::Role;
 
 /// An example of a schema; none for a name that has none.
 pub fn of(schema: &str) -> Option<Value> {
@@ -50,6 +52,18 @@ pub fn of(schema: &str) -> Option<Value> {
         })),
         "Priors" => Some(json!({ "lamp": 0.8, "door": 0.2 })),
         "ReasonBody" => Some(json!({ "reason": "the hand is out of the way" })),
+        "Me" => Some(json!({ "asks": true, "name": "front desk", "role": "game_master", "csrf": null,
+            "may": ["POST /api/v1/stop", "dashboard arm"] })),
+        "SignIn" => Some(json!({ "token": format!("covr_3f9a01bc_{}", "0".repeat(64)) })),
+        "Ticket" => value(Ticket { ticket: "5b0e".repeat(16), lasts_secs: 30 }),
+        "TokenRow" => value(TokenRow {
+            id: "3f9a01bc".into(),
+            name: "front desk".into(),
+            role: Role::GameMaster,
+            created_at: AT.into(),
+            expires_at: None,
+            revoked_at: None,
+        }),
         "Answered" => value(Answered { outcome: "accepted".into(), detail: "homing".into() }),
         "StopAcknowledged" => value(StopAcknowledged { acknowledged: true, to_drive_micros: 2_130 }),
         "SessionExport" => value(session_export()),

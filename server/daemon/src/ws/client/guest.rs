@@ -3,6 +3,7 @@
 //! A refused message changes nothing. When a guest goes, its persons stay: nobody has said that they left.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::net::IpAddr;
 use std::sync::Arc;
 
 use covr_engine::frames::RigidMap;
@@ -21,10 +22,11 @@ use serde_json::json;
 use tokio::sync::OwnedSemaphorePermit;
 
 use crate::access::table::client_key;
-use crate::access::{Caller, Standing};
+use crate::access::{Caller, Holder, Standing};
 use crate::app::App;
 use crate::clients::Seat;
 use crate::control::PoseSlot;
+use crate::http::address;
 use crate::meters::ClientMeters;
 use crate::persons::Entry;
 use crate::ws::TAKEN_BACK;
@@ -52,12 +54,22 @@ pub enum Place {
     },
 }
 
+/// Somebody at the door.
+#[derive(Debug)]
+pub struct Newcomer {
+    /// Who they are.
+    pub caller: Caller,
+    /// Where they come from.
+    pub peer: IpAddr,
+    /// What they hold.
+    pub place: Place,
+}
+
 /// A connected client.
 pub struct Guest {
     app: Arc<App>,
     encoding: Encoding,
-    place: Place,
-    caller: Caller,
+    who: Newcomer,
     gauge: AbuseGauge,
     clock: ClientClock,
     greeted: Option<Greeted>,
@@ -85,13 +97,12 @@ struct Present {
 
 impl Guest {
     /// A client that has said nothing yet.
-    pub fn new(app: Arc<App>, encoding: Encoding, caller: Caller, place: Place) -> Self {
+    pub fn new(app: Arc<App>, encoding: Encoding, who: Newcomer) -> Self {
         let gauge = AbuseGauge::new(app.config.clients.persons_each);
         Self {
             app,
             encoding,
-            place,
-            caller,
+            who,
             gauge,
             clock: ClientClock::new(),
             greeted: None,
@@ -138,7 +149,7 @@ impl Guest {
 
     /// Its last words, if its token was taken back meanwhile.
     pub fn taken_back(&self) -> Option<Reply> {
-        let is_taken_back = self.app.roster.standing(&self.caller) == Standing::TakenBack;
+        let is_taken_back = self.app.roster.standing(&self.who.caller) == Standing::TakenBack;
         is_taken_back.then(|| Reply::LastWords(unauthorized(TAKEN_BACK.into())))
     }
 
@@ -170,8 +181,8 @@ impl Guest {
         }
         // A visitor in the arena is not cut off because a token ends by itself meanwhile.
         let was_let_in = self.greeted.is_some();
-        if !was_let_in && !self.app.roster.allows(&self.caller, key) {
-            return Err(unauthorized(self.app.roster.why_not(&self.caller, key)));
+        if !was_let_in && !self.app.roster.allows(&self.who.caller, key) {
+            return Err(unauthorized(self.app.roster.why_not(&self.who.caller, key)));
         }
         if self.greeted.is_none() && !matches!(message, FromClient::Hello(_) | FromClient::ClockPing(_)) {
             return Err(ClientError::plain(ErrorCode::HelloExpected, "the first message must be a hello"));
@@ -210,12 +221,12 @@ impl Guest {
         if self.greeted.is_some() {
             return Err(ClientError::plain(ErrorCode::AlreadyGreeted, "hello was said already"));
         }
-        if let Place::Doorstep { .. } = &self.place {
+        if let Place::Doorstep { .. } = &self.who.place {
             let seat = self.app.clients.take_seat().ok_or_else(|| {
                 ClientError::plain(ErrorCode::Full, "as many VR clients as the server takes are connected")
                     .fatal()
             })?;
-            self.place = Place::Seat(seat);
+            self.who.place = Place::Seat(seat);
         }
         let settings = &self.app.config.clients;
         let room_from_tracking =
@@ -231,7 +242,10 @@ impl Guest {
             scene: Some(ActiveScene::new(active.id, active.version, active.document.clone(), &frame)),
         };
         tracing::info!(client = hello.name, convention = hello.convention.name(), "VR client connected");
-        let detail = json!({ "client": hello.name, "convention": hello.convention.name() });
+        let mut detail = json!({ "client": hello.name, "convention": hello.convention.name() });
+        if let Some(actor) = self.who.caller.holder().map(Holder::actor) {
+            detail["actor"] = actor;
+        }
         self.record("client_connected", format!("client {} connected", hello.name), detail);
         self.greeted = Some(Greeted { hello, frame });
         self.show(received);
@@ -241,8 +255,14 @@ impl Guest {
     /// Who it is, by the token in its hello.
     async fn introduce(&mut self, token: &str) -> Result<(), ClientError> {
         if self.app.roster.asks() && self.greeted.is_none() {
+            if self.app.roster.matched_before(token).is_none() {
+                let tried = self.app.limits.try_token(address(self.who.peer));
+                tried.map_err(|_| {
+                    unauthorized("this address has shown too many tokens that are not known".into())
+                })?;
+            }
             let holder = self.app.roster.by_token(token).await;
-            self.caller = holder.map(Caller::Known).map_err(|why| unauthorized(why.to_string()))?;
+            self.who.caller = holder.map(Caller::Known).map_err(|why| unauthorized(why.to_string()))?;
         }
         Ok(())
     }
@@ -349,7 +369,7 @@ impl Guest {
             self.pose_times.pop_front();
         }
         let link = LinkFigures::of(self.persons.values().map(|present| &present.link), now);
-        let Place::Seat(seat) = &self.place else { return };
+        let Place::Seat(seat) = &self.who.place else { return };
         seat.show(Client {
             name: greeted.hello.name.clone(),
             convention: greeted.hello.convention.name().into(),
