@@ -4,7 +4,7 @@
  */
 import type { IncomingMessage, Server, ServerResponse } from "node:http";
 import { WebSocketServer, type WebSocket } from "ws";
-import type { FromDashboard, MachineRequest, PriorChange, Reason, SceneDocument, SceneError, ToDashboard } from "../src/api/types";
+import type { FromDashboard, MachineRequest, Me, PriorChange, Reason, SceneDocument, SceneError, ToDashboard } from "../src/api/types";
 import { MOCK_CONFIG } from "./config.ts";
 import { drawable } from "../src/lib/sceneText.ts";
 import { MockMachine, type MockOptions } from "./machine.ts";
@@ -96,7 +96,8 @@ export class MockServer {
     const path = url.pathname.slice("/api/v1/".length).split("/");
     const [first, second, third] = path;
     const key = `${method} ${first ?? ""}`;
-    if (key === "GET state") reply(response, 200, this.machine.snapshot());
+    if (key === "GET me") reply(response, 200, UNASKED);
+    else if (key === "GET state") reply(response, 200, this.machine.snapshot());
     else if (key === "POST stop") {
       const { toDriveMicros } = this.machine.stop(reasonOf(body));
       reply(response, 200, { acknowledged: true, to_drive_micros: toDriveMicros });
@@ -286,3 +287,12 @@ async function readBody(request: IncomingMessage): Promise<string> {
 
 const STEP_SECS = 1 / 30;
 const STARTED_AT = new Date().toISOString();
+
+/** A server without tokens asks nobody, and lets everybody do everything that this page asks for. */
+const UNASKED: Me = {
+  asks: false,
+  name: null,
+  role: null,
+  csrf: null,
+  may: ["home", "arm", "disarm", "reset", "stop"].map((request) => `dashboard ${request}`),
+};

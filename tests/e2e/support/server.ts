@@ -1,9 +1,10 @@
 /** The real server as a child: a free port, a database and a configuration of its own, and its visitors. */
-import { spawn, type ChildProcess } from "node:child_process";
+import { execFile, spawn, type ChildProcess } from "node:child_process";
 import { mkdtemp, rm, writeFile } from "node:fs/promises";
 import { createServer, type AddressInfo } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { promisify } from "node:util";
 import { onTestFinished } from "vitest";
 import type { Snapshot, WireEvent } from "../../../web/src/api/types";
 import { until } from "./until";
@@ -73,6 +74,13 @@ export class CovrServer {
     const child = this.#spawn(["visitor", "--url", `ws://127.0.0.1:${this.port}`, ...options]);
     this.#visitors.push(child);
     return child;
+  }
+
+  /** Makes a token; from the first one on the server asks everybody. */
+  async token(name: string, role: string): Promise<string> {
+    const options = ["token", "create", name, "--role", role, "--database", join(this.folder, "covr.sqlite")];
+    const { stdout } = await promisify(execFile)(binary(), options);
+    return stdout.trim();
   }
 
   /** `GET /api/v1/state`. */

@@ -4,6 +4,7 @@
  */
 import type {
   ConfigInForce,
+  Me,
   PriorChange,
   PriorPreview,
   ProblemDocument,
@@ -80,6 +81,21 @@ export async function postStop(
     acknowledged: body.acknowledged === true,
     to_drive_micros: typeof body.to_drive_micros === "number" ? body.to_drive_micros : null,
   };
+}
+
+/** `GET /api/v1/me`: whom the server takes this page for. */
+export async function readMe(): Promise<Me> {
+  return remembered((await call("GET", "/api/v1/me")) as Me);
+}
+
+/** `POST /api/v1/login`. */
+export async function signIn(token: string): Promise<Me> {
+  return remembered((await call("POST", "/api/v1/login", { text: JSON.stringify({ token }), author: "" })) as Me);
+}
+
+/** `POST /api/v1/logout`. */
+export async function signOut(): Promise<Me> {
+  return remembered((await call("POST", "/api/v1/logout", { text: "", author: "" })) as Me);
 }
 
 /** `GET /api/v1/scenes`. */
@@ -209,6 +225,14 @@ function parametersOf({ kinds, session, search, person }: EventQuery): string {
   return parameters.toString();
 }
 
+/** The server's proof goes out with everything that changes something; the stop needs none. */
+function remembered(me: Me): Me {
+  proof = me.csrf;
+  return me;
+}
+
+let proof: string | null = null;
+
 async function call(method: string, path: string, body?: Body, giveUp?: AbortSignal): Promise<unknown> {
   const text = await (await ask(method, path, body, giveUp)).text();
   return text === "" ? null : (JSON.parse(text) as unknown);
@@ -227,7 +251,9 @@ async function ask(method: string, path: string, body?: Body, giveUp?: AbortSign
     method,
     cache: "no-store",
     signal: giveUp === undefined ? deadline : AbortSignal.any([deadline, giveUp]),
-    ...(body === undefined ? {} : { body: body.text, headers: { "Content-Type": "application/json", ...author } }),
+    ...(body === undefined
+      ? {}
+      : { body: body.text, headers: { "Content-Type": "application/json", ...author, ...(proof === null ? {} : { "X-Covr-Csrf": proof }) } }),
   });
   if (!response.ok) throw await problemOf(response);
   return response;

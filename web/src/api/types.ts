@@ -43,6 +43,8 @@ export type {
   ToDashboard,
 } from "./generated";
 export type { Answered } from "./answers/Answered";
+export type { Me } from "./answers/Me";
+export type { Role } from "./answers/Role";
 export type { Problem as ProblemDocument } from "./answers/Problem";
 export type { PriorsPreview as PriorPreview } from "./answers/PriorsPreview";
 export type { SceneStored } from "./answers/SceneStored";

@@ -8,8 +8,8 @@ export const GROUPS = {
   mode: ["mode_changed", "request_accepted", "request_refused"],
   people: ["person_entered", "person_left", "served", "origin_changed", "touch_began", "touch_ended"],
   priors: ["prior_changed"],
-  scenes: ["scene_activated", "scene_event"],
-  clients: ["client_connected", "client_gone", "client_error"],
+  scenes: ["scene_activated", "scene_stored", "scene_event"],
+  clients: ["client_connected", "client_gone", "client_error", "signed_in", "signed_out", "token_made", "token_revoked", "token_taken_back"],
 } as const satisfies Readonly<Record<string, readonly string[]>>;
 
 /** What an event is about. */

@@ -9,6 +9,7 @@ import type { MachineRequest, Snapshot, WireEvent } from "../api/types";
 import { words } from "../i18n";
 import { troubleOf } from "../lib/trouble";
 import { Connection } from "./connection";
+import { createIdentity, type Identity } from "./identity";
 import { Requests, type Answer } from "./requests";
 import {
   NOTHING_YET,
@@ -42,6 +43,8 @@ export interface Live {
   readonly pressStop: () => void;
   readonly ask: (request: MachineRequest, reason?: string) => Promise<Answer>;
   readonly connectNow: () => void;
+  /** Who sits here, and what they may. */
+  readonly identity: Identity;
 }
 
 /** Connects, and keeps connected until the owner goes. */
@@ -96,7 +99,11 @@ export function createLive(): Live {
         stopSender.socketOpened();
         void readPastEvents(apply);
       }
-      if (action.kind === "closed") requests.lost();
+      if (action.kind === "closed") {
+        requests.lost();
+        // A socket does not say why it was refused.
+        void identity.refresh();
+      }
       if (action.kind === "message" && action.message.type === "answer") {
         const { request_id, outcome, detail, why, to_drive_micros } = action.message;
         if (!stopSender.socketAnswered(request_id, outcome, detail, why, to_drive_micros)) {
@@ -104,6 +111,9 @@ export function createLive(): Live {
         }
       }
     },
+  });
+  const identity = createIdentity(() => {
+    connection.connect();
   });
   const requests = new Requests((message) => connection.send(message));
   const stopSender = new StopSender({
@@ -146,6 +156,7 @@ export function createLive(): Live {
     connectNow: () => {
       connection.connect();
     },
+    identity,
   };
 }
 

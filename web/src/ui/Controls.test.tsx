@@ -8,6 +8,7 @@ import type { Mode, Snapshot } from "../api/types";
 import type { Live } from "../live/live";
 import type { Freshness } from "../live/state";
 import { Controls } from "./Controls";
+import { anybody } from "./testLive";
 
 afterEach(cleanup);
 
@@ -33,6 +34,7 @@ function live(snapshot: Snapshot | null, freshness: Freshness, ask: Live["ask"])
     stop: () => ({ kind: "idle" }),
     pressStop: () => undefined,
     connectNow: () => undefined,
+    identity: anybody(),
   };
 }
 

@@ -116,6 +116,7 @@ function refusalOf(live: Live, request: string): Sentence | null {
   const say = words().shell.machine;
   if (freshness.kind === "none") return { text: say.stateNone };
   if (freshness.kind === "stale") return { text: say.stateStale };
+  if (!live.identity.may(`dashboard ${request}`)) return { text: say.notForRole };
   const state = live.snapshot()?.requests.find((entry) => entry.request === request);
   if (state === undefined) return { text: say.notOffered };
   return state.refused_because === null ? null : said(state.why, state.refused_because);

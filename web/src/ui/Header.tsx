@@ -1,5 +1,5 @@
 /** The header: mode, ways to the views, who sits here, theme and language, and the stop. It never scrolls away. */
-import { For, type JSX } from "solid-js";
+import { For, Show, type JSX } from "solid-js";
 import { LANGUAGES, language, words } from "../i18n";
 import type { Appearance } from "../lib/appearance";
 import { theme } from "../lib/theme";
@@ -47,6 +47,19 @@ export function Header(props: {
               }}
             />
           </label>
+          <Show when={props.live.identity.me()?.role}>
+            {(role) => (
+              <button
+                type="button"
+                class="tool"
+                data-testid="sign-out"
+                title={words().shell.access.signedInAs(props.live.identity.me()?.name ?? "", words().shell.access.roles[role()])}
+                onClick={() => void props.live.identity.signOut()}
+              >
+                {words().shell.access.signOut(words().shell.access.roles[role()])}
+              </button>
+            )}
+          </Show>
           <button
             type="button"
             class="tool"

@@ -7,6 +7,7 @@ import type { Person, Snapshot } from "../api/types";
 import { useLanguage } from "../i18n";
 import type { Live } from "../live/live";
 import { Persons } from "./Persons";
+import { anybody } from "./testLive";
 
 afterEach(() => {
   cleanup();
@@ -32,6 +33,7 @@ function live(change: Partial<Person>): Live {
     stop: () => ({ kind: "idle" }),
     pressStop: () => undefined,
     connectNow: () => undefined,
+    identity: anybody(),
   };
 }
 

@@ -52,3 +52,11 @@ it("lists particulars with names, units and unknown fields as they are", () => {
   expect(particularsOf(stop, label).map(({ name, value }) => [name, value])).toEqual([["Who", "Bo"], ["Reason", "–"], ["To the drive", "1.8 ms"], ["colour", '["red"]']]);
   expect(particularsOf(event("x", "text"), label)).toEqual([]);
 });
+
+it("says by which token and role somebody acted", () => {
+  const actor = { token: "front desk", token_id: "3f9a01bc", role: "game_master" };
+  const stop = event("stop_pressed", { author: "Bo", by: "http", reason: null, to_drive_micros: 1840, actor });
+  expect(eventWords(stop, label).text).toBe("Bo (front desk, game master) pressed stop; at the drive after 1.8 ms");
+  expect(eventWords(event("stop_pressed", { author: "front desk", by: "http", reason: null, to_drive_micros: null, actor }), label).text).toContain("front desk (game master) pressed");
+  expect(particularsOf(stop, label).at(-1)).toEqual({ name: "By token", value: "front desk, game master", foreign: false });
+});

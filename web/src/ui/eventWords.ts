@@ -30,7 +30,8 @@ export function eventWords(event: WireEvent, label: (object: string) => string):
 function textOf(event: WireEvent, label: (object: string) => string): EventWords | null {
   const text = words().desk.events;
   const detail = fieldsOf(event.detail);
-  const field = (name: string): string | null => (typeof detail[name] === "string" ? detail[name] : null);
+  const field = (name: string): string | null =>
+    name === "author" ? whoOf(detail) : typeof detail[name] === "string" ? detail[name] : null;
   /** The reason that comes with a sentence of the server, else that sentence. */
   const why = (name: string): Said | null => {
     const english = field(name);
@@ -101,12 +102,30 @@ export function particularsOf(event: WireEvent, label: (object: string) => strin
   }));
 }
 
+/** The name that somebody gave, with the token and role behind it: `Ada (front desk, game master)`. */
+function whoOf(detail: Readonly<Record<string, unknown>>): string | null {
+  const author = detail["author"];
+  if (typeof author !== "string") return null;
+  const actor = actorOf(detail["actor"]);
+  if (actor === null) return author;
+  return actor.token === author ? `${author} (${actor.role})` : `${author} (${actor.token}, ${actor.role})`;
+}
+
+function actorOf(value: unknown): { readonly token: string; readonly role: string } | null {
+  const { token, role } = fieldsOf(value);
+  if (typeof token !== "string" || typeof role !== "string") return null;
+  const { roles } = words().shell.access;
+  return { token, role: Object.hasOwn(roles, role) ? roles[role as keyof typeof roles] : role };
+}
+
 function valueOf(kind: string, name: string, value: unknown, label: (object: string) => string): Omit<Particular, "name"> {
   const { details } = words().desk;
   if (value === null) return { value: details.nothing, foreign: false };
   if (typeof value === "boolean") return { value: value ? details.yes : details.no, foreign: false };
   if (name === "to_drive_micros" && typeof value === "number") return { value: millis(value / 1000), foreign: false };
   if (typeof value === "number") return { value: kind === "prior_changed" ? decimal(value, 2) : String(value), foreign: false };
+  const actor = name === "actor" ? actorOf(value) : null;
+  if (actor !== null) return { value: `${actor.token}, ${actor.role}`, foreign: false };
   if (typeof value !== "string") return { value: JSON.stringify(value), foreign: false };
   if (name === "object") return { value: label(value), foreign: false };
   if (kind === "mode_changed" && isMode(value)) return { value: modeWords(value), foreign: false };

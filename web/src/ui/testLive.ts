@@ -3,6 +3,7 @@ import { createSignal } from "solid-js";
 import { MockMachine } from "../../mock/machine";
 import { LINK_THRESHOLDS, MACHINE_SHAPE, MOCK_SCENE } from "../../mock/scene";
 import type { SceneDocument, Snapshot, WireEvent } from "../api/types";
+import type { Identity } from "../live/identity";
 import type { Live } from "../live/live";
 import type { Freshness } from "../live/state";
 
@@ -13,6 +14,18 @@ export interface TestLive {
   /** Moves the machine on and shows its state, changed as wanted. */
   readonly show: (secs: number, change?: (snapshot: Snapshot) => Snapshot) => void;
   readonly setFreshness: (freshness: Freshness) => void;
+}
+
+/** Somebody whom the server asks nothing. */
+export function anybody(): Identity {
+  return {
+    me: () => null,
+    mustSignIn: () => false,
+    may: () => true,
+    refresh: () => Promise.resolve(),
+    signIn: () => Promise.resolve(null),
+    signOut: () => Promise.resolve(),
+  };
 }
 
 /** A following machine with its scene. */
@@ -43,6 +56,7 @@ export function testLive(scene: SceneDocument = MOCK_SCENE): TestLive {
       pressStop: () => undefined,
       ask: () => Promise.reject(new Error("nothing may be asked")),
       connectNow: () => undefined,
+      identity: anybody(),
     },
   };
 }

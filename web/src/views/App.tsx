@@ -12,6 +12,7 @@ import { Header } from "../ui/Header";
 import { KEYS_OF_THE_LIST, useShellShortcuts } from "../ui/keys";
 import { ShortcutsDialog } from "../ui/ShortcutsDialog";
 import { StopReport } from "../ui/StopReport";
+import { SignIn } from "../ui/SignIn";
 import { Strip } from "../ui/Strip";
 import { Tour } from "../ui/Tour";
 import { HelpView } from "./HelpView";
@@ -73,6 +74,7 @@ export function App(): JSX.Element {
       />
       <div class="bars">
         <StopReport stop={live.stop()} nowMillis={live.nowMillis()} />
+        <SignIn identity={live.identity} />
         <Banners live={live} />
         <p class="unseen" role="status" data-testid="said">
           {said()}

@@ -168,6 +168,7 @@ export const desk = {
   },
   details: {
     author: "Who",
+    actor: "By token",
     by: "By way of",
     reason: "Reason",
     because: "Because",

@@ -2,6 +2,20 @@
 export const shell = {
   pages: { label: "Views", live: "Live", scenes: "Scenes", sessions: "Sessions", settings: "Settings", help: "Help" },
   author: { label: "you are", title: "Your name", means: "Your name, as the records of priors and scenes name you" },
+  access: {
+    signInWith: "This server asks who you are. Your token:",
+    signIn: "Sign in",
+    stopWorks: "Stop works without.",
+    signOut: (role: string) => `${role}: sign out`,
+    signedInAs: (name: string, role: string) => `Signed in as ${name}, ${role}`,
+    roles: {
+      observer: "observer",
+      client: "VR client",
+      designer: "designer",
+      game_master: "game master",
+      administrator: "administrator",
+    },
+  },
   theme: { label: "Theme", dark: "Dark", light: "Light", system: "As the system", change: "Theme: switch between dark and light" },
   language: { label: "Language", change: "Language: English or French" },
   shortcutsButton: "Keyboard shortcuts",
@@ -98,6 +112,7 @@ export const shell = {
     stateStale: "the state shown is stale",
     stateNone: "no state from the server yet",
     notOffered: "the server does not offer it",
+    notForRole: "not for your role",
     request: { home: "home", arm: "arm", disarm: "disarm", reset: "reset" },
     outcome: { accepted: "accepted", already_so: "already so", refused: "refused" },
     unanswered: "unanswered",

@@ -168,6 +168,7 @@ export const desk = {
   },
   details: {
     author: "Qui",
+    actor: "Par jeton",
     by: "Par",
     reason: "Motif",
     because: "Parce que",

@@ -2,6 +2,20 @@
 export const shell = {
   pages: { label: "Vues", live: "En direct", scenes: "Scènes", sessions: "Séances", settings: "Réglages", help: "Aide" },
   author: { label: "vous êtes", title: "Votre nom", means: "Votre nom, tel qu’il figure dans l’historique des a priori et des scènes" },
+  access: {
+    signInWith: "Ce serveur demande qui vous êtes. Votre jeton :",
+    signIn: "Se connecter",
+    stopWorks: "L’arrêt fonctionne sans.",
+    signOut: (role: string) => `${role} : se déconnecter`,
+    signedInAs: (name: string, role: string) => `Connecté : ${name}, ${role}`,
+    roles: {
+      observer: "observateur",
+      client: "client VR",
+      designer: "concepteur",
+      game_master: "maître de jeu",
+      administrator: "administrateur",
+    },
+  },
   theme: { label: "Thème", dark: "Sombre", light: "Clair", system: "Comme le système", change: "Thème : passer du sombre au clair" },
   language: { label: "Langue", change: "Langue : anglais ou français" },
   shortcutsButton: "Raccourcis clavier",
@@ -98,6 +112,7 @@ export const shell = {
     stateStale: "l’état affiché est périmé",
     stateNone: "aucun état reçu du serveur",
     notOffered: "le serveur ne le propose pas",
+    notForRole: "pas pour votre rôle",
     request: { home: "prise d’origine", arm: "armement", disarm: "désarmement", reset: "réinitialisation" },
     outcome: { accepted: "acceptée", already_so: "c’est déjà le cas", refused: "refus" },
     unanswered: "sans réponse",
