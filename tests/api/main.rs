@@ -17,5 +17,6 @@ mod priors;
 mod record;
 mod roles;
 mod scenes;
+mod schemathesis;
 mod sessions;
 mod visitor;
