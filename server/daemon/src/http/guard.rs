@@ -6,7 +6,8 @@ use std::net::IpAddr;
 use std::sync::Arc;
 
 use axum::extract::{Request, State};
-use axum::http::{HeaderMap, header};
+use axum::http::uri::Authority;
+use axum::http::{HeaderMap, Uri, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
@@ -21,7 +22,7 @@ pub async fn same_host(State(app): State<Arc<App>>, request: Request, next: Next
     let loopback_only = app.config.server.bind.ip().is_loopback();
     let allowed: &[String] =
         if request.uri().path() == CLIENTS { &app.config.clients.allowed_origins } else { &[] };
-    match refusal(request.headers(), loopback_only, allowed) {
+    match refusal(request.headers(), request.uri(), loopback_only, allowed) {
         Some(why) => Problem::forbidden(why).into_response(),
         None => next.run(request).await,
     }
@@ -29,8 +30,10 @@ pub async fn same_host(State(app): State<Arc<App>>, request: Request, next: Next
 
 /// Why these headers are refused. On a server that only this machine reaches, the host must be this machine:
 /// a name of someone's own that resolves to it would be another site in disguise.
-fn refusal(headers: &HeaderMap, loopback_only: bool, allowed: &[String]) -> Option<String> {
-    let host = headers.get(header::HOST).and_then(|host| host.to_str().ok());
+fn refusal(headers: &HeaderMap, uri: &Uri, loopback_only: bool, allowed: &[String]) -> Option<String> {
+    let named = headers.get(header::HOST).and_then(|host| host.to_str().ok());
+    // HTTP/2, which browsers speak over TLS, says the host in the address and has no header of it.
+    let host = named.or_else(|| uri.authority().map(Authority::as_str));
     if let Some(host) = host
         && loopback_only
         && !is_this_machine(host)
@@ -74,7 +77,20 @@ mod tests {
         if let Some(origin) = origin {
             headers.insert(header::ORIGIN, origin.parse().unwrap());
         }
-        refusal(&headers, loopback_only, &allowed).is_some()
+        refusal(&headers, &Uri::from_static("/"), loopback_only, &allowed).is_some()
+    }
+
+    #[test]
+    fn a_host_in_the_address_alone_is_looked_at_as_well() {
+        let refused = |address: &'static str, origin: &'static str, loopback_only| {
+            let mut headers = HeaderMap::new();
+            headers.insert(header::ORIGIN, origin.parse().unwrap());
+            refusal(&headers, &Uri::from_static(address), loopback_only, &[]).is_some()
+        };
+        let login = "https://lab.local:7878/api/v1/login";
+        assert!(!refused(login, "https://lab.local:7878", false));
+        assert!(refused(login, "https://elsewhere.example", false));
+        assert!(refused("https://rebound.example/", "https://rebound.example", true));
     }
 
     #[test]
