@@ -103,6 +103,20 @@ describe("the connection", () => {
     expect(actions).toHaveLength(count);
   });
 
+  it("lets an open socket go for a new one, and hears nothing more from it", () => {
+    const { connection, sockets, actions } = world();
+    connection.connect();
+    sockets[0]?.opens();
+    connection.renew();
+    expect(sockets.map(({ readyState }) => readyState)).toEqual([2, 0]);
+    const count = actions.length;
+    sockets[0]?.says(EVENT);
+    sockets[0]?.drops();
+    expect(actions).toHaveLength(count);
+    sockets[1]?.opens();
+    expect(actions.at(-1)?.kind).toBe("opened");
+  });
+
   it("connects at once when told to, and never after its end", () => {
     const { connection, sockets } = world();
     connection.connect();

@@ -72,6 +72,14 @@ export class Connection {
     return true;
   }
 
+  /** Lets the open socket go and begins anew: another person sits here now. */
+  renew(): void {
+    const socket = this.#socket;
+    this.#socket = null;
+    socket?.close();
+    this.connect();
+  }
+
   /** Closes for good. */
   end(): void {
     this.#ended = true;

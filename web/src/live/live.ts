@@ -109,11 +109,15 @@ export function createLive(): Live {
         if (!stopSender.socketAnswered(request_id, outcome, detail, why, to_drive_micros)) {
           requests.answered(request_id, outcome, detail, why);
         }
+        // A login that has ended shows itself by a refusal that is none of the machine's.
+        if (outcome === "refused" && why === null) void identity.refresh();
       }
     },
   });
   const identity = createIdentity(() => {
-    connection.connect();
+    // What is open still speaks for whoever sat here before.
+    requests.lost();
+    connection.renew();
   });
   const requests = new Requests((message) => connection.send(message));
   const stopSender = new StopSender({
