@@ -70,6 +70,18 @@ it.skipIf(why !== null)(`lets a visitor in from the Python script${why === null 
   await until("the visitor has left", 5_000, async () => (await server.state()).persons.length === 0);
 });
 
+it.skipIf(why !== null)("shows its token in Python, where the server has tokens", async () => {
+  const server = await CovrServer.start();
+  const token = await server.token("headset", "client");
+  await until("the server asks", 10_000, async () => (await fetch(`${server.url}/api/v1/state`)).status === 401);
+  const run = (shown: Readonly<Record<string, string>>): ReturnType<typeof spawnSync> =>
+    spawnSync(PYTHON, [SCRIPT, "--url", server.url.replace("http", "ws"), "--seconds", "1"], { encoding: "utf8", env: { ...process.env, ...shown } });
+  expect(run({}).status).toBe(1);
+  const known = run({ COVR_TOKEN: token });
+  expect(known.stdout).toContain("welcome from CoVR");
+  expect(known.status, `${String(known.stdout)}${String(known.stderr)}`).toBe(0);
+});
+
 it.skipIf(why !== null)("says in Python when there is no server", () => {
   const run = spawnSync(PYTHON, [SCRIPT, "--url", "ws://127.0.0.1:9", "--seconds", "1"], { encoding: "utf8" });
   expect(run.status).toBe(1);

@@ -11,7 +11,7 @@ let sequence = 0, pings = 0, previous;
 const socket = new WebSocket(server + "/ws/v1/client", "covr.v1.json");
 const say = (message) => { if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message)); };
 socket.onopen = () => {
-  say({ type: "hello", name: "example page", convention: "ros" });
+  say({ type: "hello", name: "example page", convention: "ros", token: location.hash.slice(1) || undefined });
   say({ type: "enter", person: "visitor" });
   setInterval(() => say({ type: "clock_ping", id: ++pings, client_time_micros: micros(), previous }), 1000);
   setInterval(pose, 1000 / 90);

@@ -11,6 +11,8 @@ import argparse
 import asyncio
 import json
 import math
+import os
+import ssl
 import sys
 import time
 
@@ -83,10 +85,14 @@ async def listen(socket, heard, pongs):
             print(f"refused: {message['message']}", flush=True)
 
 
-async def visit(url, seconds):
+async def visit(url, seconds, token, authority):
     heard, pongs = {}, []
-    async with connect(f"{url.rstrip('/')}/ws/v1/client", subprotocols=["covr.v1.json"]) as socket:
-        await socket.send(json.dumps({"type": "hello", "name": "example script", "convention": "ros"}))
+    hello = {"type": "hello", "name": "example script", "convention": "ros"}
+    if token:
+        hello["token"] = token
+    secure = {"ssl": ssl.create_default_context(cafile=authority)} if url.startswith("wss://") else {}
+    async with connect(f"{url.rstrip('/')}/ws/v1/client", subprotocols=["covr.v1.json"], **secure) as socket:
+        await socket.send(json.dumps(hello))
         await socket.send(json.dumps({"type": "enter", "person": "visitor"}))
         others = [asyncio.create_task(listen(socket, heard, pongs)), asyncio.create_task(ping(socket, pongs))]
         await walk(socket, seconds)
@@ -102,9 +108,11 @@ def main():
     parser = argparse.ArgumentParser(description=about, epilog=usage, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--url", default="ws://127.0.0.1:7878", help="the server (default: %(default)s)")
     parser.add_argument("--seconds", type=float, default=10, help="how long to walk (default: %(default)s)")
+    parser.add_argument("--token", default=os.environ.get("COVR_TOKEN"), help="where the server has tokens (default: the variable COVR_TOKEN)")
+    parser.add_argument("--authority", help="the authority of the server's certificate (PEM), for wss")
     options = parser.parse_args()
     try:
-        return asyncio.run(visit(options.url, options.seconds))
+        return asyncio.run(visit(options.url, options.seconds, options.token, options.authority))
     except (OSError, InvalidHandshake, ConnectionClosed) as why:
         print(f"visitor.py: {options.url}: {why}", file=sys.stderr)
         return 1
