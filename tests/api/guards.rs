@@ -56,6 +56,12 @@ async fn the_network_is_refused_without_tls_and_a_token_or_a_word() {
     config.server.tls_key = None;
     let words = refused(&config).await;
     assert!(words.contains("belong together"), "{words}");
+    let missing = TempDir::new().unwrap();
+    let mut config = test_config(&missing);
+    (config.server.tls_certificate, config.server.tls_key) =
+        (Some("none.pem".into()), Some("none.key".into()));
+    let words = refused(&config).await;
+    assert!(words.contains("none.pem") && !config.server.database.exists(), "before anything: {words}");
 }
 
 /// A certificate and its key, made as `covr cert` does.
@@ -142,6 +148,18 @@ async fn whoever_guesses_tokens_is_slowed_down_and_whoever_is_known_is_not() {
     assert!(statuses.starts_with(&[401; 5]) && statuses.ends_with(&[429; 2]), "{statuses:?}");
     assert_eq!(server.call_with(Some(&token), "GET", "/api/v1/state", None).await.status(), 200);
     assert_eq!(server.call_with(Some(&guess), "POST", "/api/v1/stop", None).await.status(), 200);
+}
+
+#[tokio::test]
+async fn a_program_whose_token_has_ended_keeps_nobody_beside_it_from_signing_in() {
+    let server = TestServer::start().await;
+    let ended = server.token_until(Role::Observer, Some("2026-01-02T00:00:00Z")).await;
+    let token = server.token(Role::GameMaster).await;
+    for _ in 0..30 {
+        assert_eq!(server.call_with(Some(&ended), "GET", "/api/v1/state", None).await.status(), 401);
+    }
+    let body = serde_json::json!({ "token": token }).to_string();
+    assert_eq!(server.call_with(None, "POST", "/api/v1/login", Some(&body)).await.status(), 200);
 }
 
 #[tokio::test]

@@ -62,8 +62,9 @@ pub fn run(command: &CertCommand) -> anyhow::Result<String> {
 fn make_authority(certificate: &Path, key_file: &Path) -> anyhow::Result<Issuer<'static, KeyPair>> {
     let (params, key) = (authority()?, KeyPair::generate()?);
     let made = params.self_signed(&key)?;
-    write_secret(key_file, &key.serialize_pem())?;
+    // The key last: where it is, the authority is whole.
     fs::write(certificate, made.pem()).with_context(|| format!("{}", certificate.display()))?;
+    write_secret(key_file, &key.serialize_pem())?;
     Ok(Issuer::new(params, key))
 }
 

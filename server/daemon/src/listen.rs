@@ -2,7 +2,6 @@
 //! connections that say nothing are gone after that; none of them takes a stop's place.
 
 use std::net::SocketAddr;
-use std::path::Path;
 use std::time::Duration;
 
 use anyhow::{Context, ensure};
@@ -62,8 +61,26 @@ pub fn check_tokens(config: &Config, roster: &Roster) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// The certificate and its key, read; none: no TLS.
+pub async fn tls(config: &Config) -> anyhow::Result<Option<RustlsConfig>> {
+    let (Some(certificate), Some(key)) = (&config.server.tls_certificate, &config.server.tls_key) else {
+        return Ok(None);
+    };
+    // Another part of the process may have chosen it already.
+    let _ = rustls::crypto::ring::default_provider().install_default();
+    let tls = RustlsConfig::from_pem_file(certificate, key).await.with_context(|| {
+        format!("server.tls_certificate {}, server.tls_key {}", certificate.display(), key.display())
+    })?;
+    Ok(Some(tls))
+}
+
 /// Answer on this socket.
-pub async fn listen(listener: TcpListener, config: &Config, router: Router) -> anyhow::Result<Listening> {
+pub fn listen(
+    listener: TcpListener,
+    config: &Config,
+    tls: Option<RustlsConfig>,
+    router: Router,
+) -> Listening {
     allow_many_connections();
     let handle = Handle::new();
     let longest = Duration::from_secs_f64(config.server.header_timeout_secs);
@@ -74,15 +91,14 @@ pub async fn listen(listener: TcpListener, config: &Config, router: Router) -> a
     server.http_builder().http2().max_concurrent_streams(MOST_STREAMS).keep_alive_interval(longest);
     let service = router.into_make_service_with_connect_info::<SocketAddr>();
     // Without Nagle's delay: a column's position that waits for the one before is old.
-    let http = match (&config.server.tls_certificate, &config.server.tls_key) {
-        (Some(certificate), Some(key)) => {
-            let tls = tls(certificate, key).await?;
+    let http = match tls {
+        Some(tls) => {
             let acceptor = RustlsAcceptor::new(tls).handshake_timeout(longest).acceptor(NoDelayAcceptor);
             tokio::spawn(server.acceptor(acceptor).serve(service))
         }
-        _ => tokio::spawn(server.acceptor(NoDelayAcceptor).serve(service)),
+        None => tokio::spawn(server.acceptor(NoDelayAcceptor).serve(service)),
     };
-    Ok(Listening { http, handle })
+    Listening { http, handle }
 }
 
 impl Listening {
@@ -90,14 +106,6 @@ impl Listening {
     pub fn close(&self, longest: Duration) {
         self.handle.graceful_shutdown(Some(longest));
     }
-}
-
-async fn tls(certificate: &Path, key: &Path) -> anyhow::Result<RustlsConfig> {
-    // Another part of the process may have chosen it already.
-    let _ = rustls::crypto::ring::default_provider().install_default();
-    RustlsConfig::from_pem_file(certificate, key).await.with_context(|| {
-        format!("server.tls_certificate {}, server.tls_key {}", certificate.display(), key.display())
-    })
 }
 
 /// As many files as the system lets: each connection is one, and a stop needs one too.

@@ -29,7 +29,7 @@ use crate::clock::Clock;
 use crate::config::{Config, Loaded, MachineKind};
 use crate::control::{Control, Ended, Setup, StopLaneName};
 use crate::http::Limits;
-use crate::listen::{Listening, check_reach, check_tokens, listen};
+use crate::listen::{Listening, check_reach, check_tokens, listen, tls};
 use crate::persons::Persons;
 use crate::recorder::{Desk, Recorder};
 use crate::recording::{Booth, Recording};
@@ -58,6 +58,7 @@ impl Server {
     pub async fn start_with(config: impl Into<Loaded>, gantry: Box<dyn Gantry>) -> anyhow::Result<Self> {
         let Loaded { config, origins } = config.into();
         check_reach(&config)?;
+        let tls = tls(&config).await?;
         let intention = config.people.intention()?;
         let prometheus = meters::install()?;
         let clock = Clock::started_now();
@@ -153,7 +154,7 @@ impl Server {
         });
         tokio::spawn(live::publish(app.clone(), frames));
         tokio::spawn(follow_tokens(app.clone()));
-        let http = listen(listener, &app.config, http::router(app.clone())).await?;
+        let http = listen(listener, &app.config, tls, http::router(app.clone()));
         tracing::info!(
             version = env!("CARGO_PKG_VERSION"),
             "covr serves; the dashboard is at {}://{address}",

@@ -55,7 +55,7 @@ pub fn document(config: &Config) -> Document {
         "servers": {
             "here": {
                 "host": config.server.bind.to_string(),
-                "protocol": "ws",
+                "protocol": if config.server.is_encrypted() { "wss" } else { "ws" },
                 "protocolVersion": "13",
                 "description": "This server, at the address that it was told to listen on. A browser's page must come from this server \
                     too, or from an origin that `clients.allowed_origins` names, else the upgrade is answered 403. Programs send no `Origin`.",
