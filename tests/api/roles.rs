@@ -76,6 +76,31 @@ async fn what_is_no_token_in_force_is_refused_and_stops_all_the_same() {
 }
 
 #[tokio::test]
+async fn a_token_that_is_used_as_soon_as_it_is_made_is_in_the_record_all_the_same() {
+    let server = TestServer::start().await;
+    let token = server.token(Role::Observer).await;
+    eventually("it is in the record", || async {
+        let events = server.app.store.events(50, &Default::default()).await.unwrap().events;
+        events.iter().any(|event| event.detail["token_id"] == token[5..13]).then_some(())
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn a_database_that_does_not_answer_is_no_wrong_token_and_stops_nobody_who_is_known() {
+    let server = TestServer::start().await;
+    let known = server.token(Role::Observer).await;
+    assert_eq!(server.call_with(Some(&known), "GET", "/api/v1/state", None).await.status(), 200);
+    server.app.store.close().await;
+    let unknown = format!("covr_00000000_{}", "0".repeat(64));
+    let response = server.call_with(Some(&unknown), "GET", "/api/v1/state", None).await;
+    assert_eq!(response.headers().get("www-authenticate"), None);
+    problem(503, "/api/v1/state", response).await;
+    assert_eq!(server.call_with(Some(&known), "GET", "/api/v1/state", None).await.status(), 200);
+    assert_eq!(server.call_with(Some(&unknown), "POST", "/api/v1/stop", None).await.status(), 200);
+}
+
+#[tokio::test]
 async fn a_token_that_is_taken_back_ends_what_its_holder_has_open() {
     let server = TestServer::start().await;
     let (master, headset) = (server.token(Role::GameMaster).await, server.token(Role::Client).await);

@@ -168,10 +168,11 @@ impl App {
     /// Look into the database for tokens that were made or taken back, and record them.
     pub async fn follow_tokens(&self) {
         match self.roster.refresh().await {
-            Ok(changes) => changes.iter().for_each(|change| self.record_token(change)),
+            Ok(()) => {}
             // Who was known stays known: the machine can be run without the database.
             Err(error) => tracing::warn!(%error, "the tokens cannot be looked at"),
         }
+        self.roster.take_changes().iter().for_each(|change| self.record_token(change));
     }
 
     fn record_token(&self, change: &Change) {

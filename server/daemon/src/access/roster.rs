@@ -96,7 +96,11 @@ pub struct Roster {
     logins: Mutex<HashMap<Fingerprint, Login>>,
     tickets: Mutex<HashMap<Fingerprint, Ticket>>,
     /// One hash at a time: whoever guesses cannot take every core.
-    hashing: Semaphore,
+    hashing: Arc<Semaphore>,
+    /// Held while the database is looked into: what was read first never replaces what was read later.
+    looking: tokio::sync::Mutex<()>,
+    /// What changed among the tokens and is not recorded yet.
+    changes: Mutex<Vec<Change>>,
     changed: watch::Sender<()>,
 }
 
@@ -127,11 +131,15 @@ impl Roster {
             matched: Mutex::default(),
             logins: Mutex::default(),
             tickets: Mutex::default(),
-            hashing: Semaphore::new(1),
+            hashing: Arc::new(Semaphore::new(1)),
+            looking: tokio::sync::Mutex::default(),
+            changes: Mutex::default(),
             changed: watch::Sender::new(()),
             store,
         };
         roster.refresh().await?;
+        // What was there before is no change.
+        roster.take_changes();
         let logins = roster.store.logins().await?.into_iter().filter_map(|stored| {
             let hash = bytes_of(&stored.hash)?;
             Some((hash, Login { token_id: stored.token_id, expires: moment(&stored.expires)? }))
@@ -140,8 +148,9 @@ impl Roster {
         Ok(roster)
     }
 
-    /// Look into the database; what changed among the tokens.
-    pub async fn refresh(&self) -> Result<Vec<Change>, StoreError> {
+    /// Look into the database.
+    pub async fn refresh(&self) -> Result<(), StoreError> {
+        let _alone = self.looking.lock().await;
         let stored = self.store.tokens().await?;
         let before = self.tokens.load_full();
         let held = |stored: StoredToken| {
@@ -150,7 +159,7 @@ impl Roster {
             (stored.id.clone(), Held { stored, expires })
         };
         let now: HashMap<String, Held> = stored.into_iter().map(held).collect();
-        let mut changes = Vec::new();
+        let mut changes = lock(&self.changes);
         for (id, Held { stored, .. }) in &now {
             let known = before.get(id).map(|held| &held.stored);
             if known.is_none() {
@@ -164,7 +173,12 @@ impl Roster {
             self.tokens.store(Arc::new(now));
             self.changed.send_replace(());
         }
-        Ok(changes)
+        Ok(())
+    }
+
+    /// What changed among the tokens since this was last asked, whoever looked into the database meanwhile.
+    pub fn take_changes(&self) -> Vec<Change> {
+        std::mem::take(&mut lock(&self.changes))
     }
 
     /// Whether everybody is asked who they are: from the first token on, for ever.
@@ -185,11 +199,11 @@ impl Roster {
 
     /// Who shows this token.
     pub async fn by_token(&self, text: &str) -> Result<Holder, NotLetIn> {
-        let token = Token::parse(text).ok_or(NotLetIn::NotInForce)?;
-        if let Some(holder) = self.recognise(&token) {
-            return Ok(holder);
+        if let Some(known) = self.at_once(text) {
+            return known;
         }
-        let _alone = self.hashing.acquire().await;
+        let token = Token::parse(text).ok_or(NotLetIn::NotInForce)?;
+        let alone = self.hashing.clone().acquire_owned().await;
         if !self.tokens.load().contains_key(token.id()) {
             self.refresh().await?;
         }
@@ -197,7 +211,12 @@ impl Roster {
         let hash =
             self.tokens.load().get(token.id()).map(|held| held.stored.hash.clone()).unwrap_or_default();
         let (id, print) = (token.id().to_owned(), token.fingerprint());
-        let matches = tokio::task::spawn_blocking(move || token.matches(&hash)).await.unwrap_or(false);
+        let hashed = tokio::task::spawn_blocking(move || {
+            // Until it is hashed, also when whoever asked has gone.
+            let _alone = alone;
+            token.matches(&hash)
+        });
+        let matches = hashed.await.unwrap_or(false);
         if !matches {
             return Err(NotLetIn::NotInForce);
         }
@@ -205,9 +224,14 @@ impl Roster {
         Ok(holder)
     }
 
-    /// Who shows this token, without waiting; none when it was not matched before.
-    pub fn matched_before(&self, text: &str) -> Option<Holder> {
-        self.recognise(&Token::parse(text)?)
+    /// Who shows this token; none where that takes a hash or the database.
+    pub fn at_once(&self, text: &str) -> Option<Result<Holder, NotLetIn>> {
+        let Some(token) = Token::parse(text) else { return Some(Err(NotLetIn::NotInForce)) };
+        if !self.tokens.load().contains_key(token.id()) {
+            return None;
+        }
+        let Some(holder) = self.holder(token.id(), None) else { return Some(Err(NotLetIn::NotInForce)) };
+        (lock(&self.matched).get(token.id()) == Some(&token.fingerprint())).then_some(Ok(holder))
     }
 
     /// Who shows this cookie.
@@ -313,14 +337,11 @@ impl Roster {
         }
     }
 
-    /// Told whenever a token or a login may have ended before its time.
+    /// Told whenever a token or a login may have ended before its time; and once at first, for what ended just before.
     pub fn watch(&self) -> watch::Receiver<()> {
-        self.changed.subscribe()
-    }
-
-    fn recognise(&self, token: &Token) -> Option<Holder> {
-        let is_it = lock(&self.matched).get(token.id()) == Some(&token.fingerprint());
-        if is_it { self.holder(token.id(), None) } else { None }
+        let mut changed = self.changed.subscribe();
+        changed.mark_changed();
+        changed
     }
 
     /// The holder of a token in force.

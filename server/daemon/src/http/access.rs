@@ -105,7 +105,7 @@ async fn sign_in(State(app): State<Arc<App>>, asker: Asker, body: Bytes) -> Resu
             "this server asks nobody who they are: no token was made yet",
         ));
     }
-    let signed_in = app.roster.sign_in(token.trim()).await.map_err(refused)?;
+    let signed_in = app.roster.sign_in(token.trim()).await?;
     let caller = Caller::Known(signed_in.holder);
     let asker = Asker { caller, ..asker };
     app.recorder.record("signed_in", format!("{asker} signed in"), asker.sign(json!({})));
@@ -131,7 +131,7 @@ async fn ticket(
     State(app): State<Arc<App>>,
     Extension(caller): Extension<Caller>,
 ) -> Result<Response, Problem> {
-    let ticket = app.roster.ticket(caller).map_err(|why| refused(why.into()))?;
+    let ticket = app.roster.ticket(caller).map_err(NotLetIn::from)?;
     Ok(private(Json(Ticket { ticket, lasts_secs: TICKET_LASTS.as_secs() })))
 }
 
@@ -203,16 +203,6 @@ fn with_cookie(mut response: Response, cookie: &Cookie<'_>) -> Response {
 /// Never kept by a browser or a proxy.
 fn private(answer: impl IntoResponse) -> Response {
     (StatusCode::OK, [(CACHE_CONTROL, HeaderValue::from_static("no-store"))], answer).into_response()
-}
-
-fn refused(why: NotLetIn) -> Problem {
-    match why {
-        NotLetIn::NotInForce => Problem::unauthorized(why.to_string()),
-        NotLetIn::Store(error) => error.into(),
-        NotLetIn::Random(_) => {
-            Problem::new(StatusCode::SERVICE_UNAVAILABLE, "unavailable", "Unavailable", why.to_string())
-        }
-    }
 }
 
 /// The cookie of a browser that is signed in.

@@ -26,22 +26,25 @@ pub async fn pass(State(app): State<Arc<App>>, mut request: Request, next: Next)
     let caller = if key == STOP {
         at_once(&app, request.headers())
     } else {
-        let shown = bearer(request.headers()).filter(|token| app.roster.matched_before(token).is_none());
-        let hashes = app.roster.asks() && (shown.is_some() || key == SIGN_IN);
+        let is_new = bearer(request.headers()).is_some_and(|token| app.roster.at_once(token).is_none());
+        let hashes = app.roster.asks() && (is_new || key == SIGN_IN);
         if hashes && let Err(too_much) = app.limits.try_token(peer(&request)) {
             return too_much.into_response();
         }
         match identify(&app, &path, request.uri(), request.headers()).await {
             Ok(caller) => caller,
             Err(_) if who == Who::Anybody => Caller::Stranger,
-            Err(problem) => return unauthorized(problem),
+            Err(problem) => {
+                tracing::info!(key, why = problem.detail, from = %peer(&request), "refused");
+                return refused(problem);
+            }
         }
     };
     if !app.roster.allows(&caller, &key) {
         let why = app.roster.why_not(&caller, &key);
         tracing::info!(key, why, "refused");
         return match caller.holder() {
-            None => unauthorized(Problem::unauthorized(why)),
+            None => refused(Problem::unauthorized(why)),
             Some(_) => Problem::forbidden(why).into_response(),
         };
     }
@@ -61,7 +64,7 @@ async fn identify(app: &App, path: &str, uri: &Uri, headers: &HeaderMap) -> Resu
     match bearer(headers) {
         Some(token) => match app.roster.by_token(token).await {
             Ok(holder) => Ok(Caller::Known(holder)),
-            Err(why) => Err(Problem::unauthorized(why.to_string())),
+            Err(why) => Err(why.into()),
         },
         None if path.starts_with(SOCKETS) => match ticket(uri) {
             Some(ticket) => app.roster.by_ticket(ticket).ok_or_else(|| {
@@ -75,7 +78,7 @@ async fn identify(app: &App, path: &str, uri: &Uri, headers: &HeaderMap) -> Resu
 
 /// Whoever can be known without waiting.
 fn at_once(app: &App, headers: &HeaderMap) -> Caller {
-    let holder = bearer(headers).and_then(|token| app.roster.matched_before(token));
+    let holder = bearer(headers).and_then(|token| app.roster.at_once(token)?.ok());
     holder.map_or_else(|| by_cookie(app, headers), Caller::Known)
 }
 
@@ -106,9 +109,11 @@ fn bearer(headers: &HeaderMap) -> Option<&str> {
     scheme.eq_ignore_ascii_case("bearer").then_some(token.trim())
 }
 
-fn unauthorized(problem: Problem) -> Response {
+fn refused(problem: Problem) -> Response {
     let mut response = problem.into_response();
-    response.headers_mut().insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+    if response.status() == StatusCode::UNAUTHORIZED {
+        response.headers_mut().insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+    }
     response
 }
 

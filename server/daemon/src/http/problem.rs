@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 use utoipa::ToSchema;
 
+use crate::access::NotLetIn;
 use crate::control::NotDelivered;
 use crate::store::StoreError;
 
@@ -143,6 +144,18 @@ impl From<StoreError> for Problem {
     fn from(error: StoreError) -> Self {
         tracing::error!(%error, "the store failed");
         Self::unavailable(Reason::DatabaseSilent)
+    }
+}
+
+impl From<NotLetIn> for Problem {
+    fn from(why: NotLetIn) -> Self {
+        match why {
+            NotLetIn::NotInForce => Self::unauthorized(why.to_string()),
+            NotLetIn::Store(error) => error.into(),
+            NotLetIn::Random(_) => {
+                Self::new(StatusCode::SERVICE_UNAVAILABLE, "unavailable", "Unavailable", why.to_string())
+            }
+        }
     }
 }
 

@@ -50,11 +50,11 @@ pub async fn upgrade(
             }
         }
     };
-    // Whoever has yet to say who they are takes no seat from those who are known.
-    let place = if caller == Caller::Stranger {
-        app.doorstep.clone().try_acquire_owned().ok().map(|permit| Place::Doorstep { _permit: permit })
-    } else {
+    // Whoever may not speak for visitors, or has yet to say who they are, takes no seat from those who may.
+    let place = if app.roster.allows(&caller, "client hello") {
         app.clients.take_seat().map(Place::Seat)
+    } else {
+        app.doorstep.clone().try_acquire_owned().ok().map(|permit| Place::Doorstep { _permit: permit })
     };
     let Some(place) = place else {
         let why = "as many VR clients as the server takes are connected";
@@ -92,7 +92,7 @@ async fn read(
         let next_show = app.clock.instant_of(guest.next_show()).into();
         let next = tokio::select! {
             biased;
-            next = timeout_at(deadline.min(next_show), stream.next()) => next,
+            // First, so that whoever says a lot is not let go on for it.
             Ok(()) = roster.changed() => {
                 if let Some(reply) = guest.taken_back() {
                     let _ = replies.try_send(reply);
@@ -100,6 +100,7 @@ async fn read(
                 }
                 continue;
             }
+            next = timeout_at(deadline.min(next_show), stream.next()) => next,
         };
         let message = match next {
             Ok(Some(Ok(message))) => message,

@@ -185,6 +185,7 @@ impl Operation<'_> {
             answers.push(("401", "With a token or a ticket that is not in force"));
         } else if let Some(Who::Roles(_)) = self.who() {
             answers.push(("401", "Without a token that is in force, on a server that has tokens"));
+            answers.push(("503", "The database did not answer, which was asked about a token that is new"));
         }
         if !is_stop {
             answers.push(("429", "This address asks more often than `server.requests_per_sec`, or has shown many tokens that are not known; `Retry-After` says when to go on"));

@@ -26,7 +26,7 @@ use crate::access::{Caller, Holder, Standing};
 use crate::app::App;
 use crate::clients::Seat;
 use crate::control::PoseSlot;
-use crate::http::address;
+use crate::http::{Problem, address};
 use crate::meters::ClientMeters;
 use crate::persons::Entry;
 use crate::ws::TAKEN_BACK;
@@ -242,10 +242,7 @@ impl Guest {
             scene: Some(ActiveScene::new(active.id, active.version, active.document.clone(), &frame)),
         };
         tracing::info!(client = hello.name, convention = hello.convention.name(), "VR client connected");
-        let mut detail = json!({ "client": hello.name, "convention": hello.convention.name() });
-        if let Some(actor) = self.who.caller.holder().map(Holder::actor) {
-            detail["actor"] = actor;
-        }
+        let detail = json!({ "client": hello.name, "convention": hello.convention.name() });
         self.record("client_connected", format!("client {} connected", hello.name), detail);
         self.greeted = Some(Greeted { hello, frame });
         self.show(received);
@@ -255,14 +252,15 @@ impl Guest {
     /// Who it is, by the token in its hello.
     async fn introduce(&mut self, token: &str) -> Result<(), ClientError> {
         if self.app.roster.asks() && self.greeted.is_none() {
-            if self.app.roster.matched_before(token).is_none() {
+            if self.app.roster.at_once(token).is_none() {
                 let tried = self.app.limits.try_token(address(self.who.peer));
                 tried.map_err(|_| {
                     unauthorized("this address has shown too many tokens that are not known".into())
                 })?;
             }
             let holder = self.app.roster.by_token(token).await;
-            self.who.caller = holder.map(Caller::Known).map_err(|why| unauthorized(why.to_string()))?;
+            self.who.caller =
+                holder.map(Caller::Known).map_err(|why| unauthorized(Problem::from(why).detail))?;
         }
         Ok(())
     }
@@ -392,7 +390,10 @@ impl Guest {
         self.app.control.tell(observation).map_err(busy)
     }
 
-    fn record(&self, kind: &str, summary: String, detail: serde_json::Value) {
+    fn record(&self, kind: &str, summary: String, mut detail: serde_json::Value) {
+        if let Some(actor) = self.who.caller.holder().map(Holder::actor) {
+            detail["actor"] = actor;
+        }
         self.app.recorder.record(kind, summary, detail);
     }
 
