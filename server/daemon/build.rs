@@ -8,12 +8,13 @@ use std::{env, fs, io};
 
 fn main() -> io::Result<()> {
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default()).join("web");
-    let web = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web");
+    // As it is when this runs: a target directory may serve several clones.
+    let web = Path::new(&env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default()).join(WEB);
     println!("cargo::rerun-if-env-changed=COVR_SKIP_WEB");
     println!("cargo::rerun-if-env-changed=COVR_COMMIT");
     say_what_builds();
     for input in INPUTS {
-        println!("cargo::rerun-if-changed={}", web.join(input).display());
+        println!("cargo::rerun-if-changed={WEB}/{input}");
     }
     fs::create_dir_all(&out)?;
     let skipped = env::var_os("COVR_SKIP_WEB").is_some_and(|value| value != "0");
@@ -70,6 +71,8 @@ fn runs(command: &mut Command) -> bool {
     })
 }
 
+/// From this package.
+const WEB: &str = "../../web";
 const INPUTS: [&str; 9] = [
     "src",
     "public",
