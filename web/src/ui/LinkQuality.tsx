@@ -144,7 +144,9 @@ export function LinkQuality(props: { readonly live: Live }): JSX.Element {
 
 function Link(props: { readonly title: string; readonly more: string; readonly measures: readonly Measure[]; readonly testId: string }): JSX.Element {
   const text = (): Text => words().desk.links;
-  const state = (): Grade => worst(props.measures.flatMap(({ grade }) => (grade === null ? [] : [grade])));
+  // Every cell reads them: they are worked out once for all.
+  const measures = createMemo(() => props.measures);
+  const state = createMemo((): Grade => worst(measures().flatMap(({ grade }) => (grade === null ? [] : [grade]))));
   return (
     <table class="link-table fades" data-testid={props.testId} data-grade={state()}>
       <caption>
@@ -159,9 +161,9 @@ function Link(props: { readonly title: string; readonly more: string; readonly m
         </tr>
       </thead>
       <tbody>
-        <For each={props.measures.map(({ testId }) => testId)}>
+        <For each={measures().map(({ testId }) => testId)}>
           {(testId, index) => {
-            const measure = (): Measure | undefined => props.measures[index()];
+            const measure = (): Measure | undefined => measures()[index()];
             return (
               <tr data-testid={testId}>
                 <th scope="row">{measure()?.name}</th>

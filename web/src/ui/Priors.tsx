@@ -236,7 +236,7 @@ export function Priors(props: {
               draft={drafts()[object.id] ?? null}
               overtakenBy={taken().includes(object.id) ? (lastChangeOf(changes(), object.id)?.author ?? "") : null}
               weightThen={pending() > 0 ? (weightThen().get(object.id) ?? null) : null}
-              frozen={frozen() !== null}
+              frozen={!isLive()}
               move={(value) => { move(object.id, value); }}
             />
           )}

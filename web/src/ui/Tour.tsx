@@ -143,7 +143,7 @@ const STEPS = [
   { name: "stop", selector: '[data-testid="stop"]' },
   { name: "picture", selector: '[data-testid="top-view"]' },
   { name: "rules", selector: 'section[aria-labelledby="rules-title"]' },
-  { name: "priors", selector: 'section[aria-labelledby="priors-title"], section[aria-labelledby="objects-title"]' },
+  { name: "priors", selector: '[data-testid="panel-priors"]' },
   { name: "timeline", selector: 'section[aria-labelledby="timeline-title"], section[aria-labelledby="events-title"]' },
   { name: "pages", selector: ".ways" },
 ] as const;

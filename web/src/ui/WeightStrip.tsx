@@ -1,5 +1,5 @@
 /** The bars of one object's weight over the last minute. Drawn only while it is in sight. */
-import { createEffect, createSignal, onCleanup, onMount, type JSX } from "solid-js";
+import { createEffect, createMemo, createSignal, onCleanup, onMount, type JSX } from "solid-js";
 import { words } from "../i18n";
 import type { Bar } from "../live/weights";
 import { decimal } from "../lib/format";
@@ -25,15 +25,16 @@ export function WeightStrip(props: {
       seen.disconnect();
     });
   });
+  const bars = createMemo(() => (inSight() ? props.bars() : []));
   createEffect(() => {
-    if (inSight()) paint(canvas, size(), props.bars(), props.served());
+    if (inSight()) paint(canvas, size(), bars(), props.served());
   });
   return (
     <canvas
       ref={canvas}
       class="weight-strip"
       role="img"
-      aria-label={inSight() ? stripWords(props.bars(), props.served()) : words().desk.weights.lastMinute}
+      aria-label={inSight() ? stripWords(bars(), props.served()) : words().desk.weights.lastMinute}
     />
   );
 }

@@ -2,7 +2,7 @@
  * Everything about the running machine on one screen. On a laptop panels stand left and right of the picture; on a
  * tablet they are tabs beside or under it. Each user's arrangement is kept.
  */
-import { createMemo, createSignal, For, onCleanup, onMount, Show, type JSX } from "solid-js";
+import { createEffect, createMemo, createSignal, For, onCleanup, onMount, Show, type JSX } from "solid-js";
 import { words } from "../i18n";
 import { createLayout, type Limits } from "../lib/layout";
 import type { PreferenceStore } from "../lib/preferences";
@@ -37,6 +37,8 @@ export function LiveView(props: {
   const left = createMemo(() => layout.size("left", LEFT));
   const right = createMemo(() => layout.size("right", RIGHT));
   const below = createMemo(() => layout.size("below", BELOW));
+  const rows = createAfterFirstState(props.live);
+  const NoState = (): JSX.Element => <p class="empty">{words().desk.links.noState}</p>;
   /** A tab shows its panels alone; a laptop shows all. */
   const Group = (group: { readonly tab: Tab; readonly children: JSX.Element }): JSX.Element => (
     <div
@@ -92,8 +94,12 @@ export function LiveView(props: {
       <div class="desk-side desk-right" hidden={narrow() && LEFT_TABS.has(tab())}>
         <Group tab="objects">
           <Panel name="decisions"><Decisions live={props.live} /></Panel>
-          <Panel name="weights" grows><Weights live={props.live} /></Panel>
-          <Panel name="priors" grows><Priors live={props.live} author={props.author} onGhost={setGhost} /></Panel>
+          <Panel name="weights" grows>
+            <Show when={rows()} fallback={<NoState />}><Weights live={props.live} /></Show>
+          </Panel>
+          <Panel name="priors" grows>
+            <Show when={rows()} fallback={<NoState />}><Priors live={props.live} author={props.author} onGhost={setGhost} /></Show>
+          </Panel>
         </Group>
         <Group tab="events">
           <Panel name="timeline" grows><Timeline live={props.live} /></Panel>
@@ -102,6 +108,17 @@ export function LiveView(props: {
       </div>
     </div>
   );
+}
+
+/** True once the first state has been painted: two rows for each of hundreds of objects wait for what matters most. */
+function createAfterFirstState(live: Live): () => boolean {
+  const [painted, setPainted] = createSignal(false);
+  createEffect(() => {
+    if (painted() || live.snapshot() === null) return;
+    // A task of its own after the frame: the frame is shown by then.
+    requestAnimationFrame(() => setTimeout(() => setPainted(true)));
+  });
+  return painted;
 }
 
 /** The tablet's tabs: arrows go from one to the next. */
