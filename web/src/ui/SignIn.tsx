@@ -10,7 +10,7 @@ export function SignIn(props: { readonly identity: Identity }): JSX.Element {
   return (
     <Show when={props.identity.mustSignIn()}>
       <form
-        class="bar inline-form"
+        class="bar sign-in"
         data-testid="sign-in"
         onSubmit={(event) => {
           event.preventDefault();

@@ -113,7 +113,7 @@ export function App(): JSX.Element {
           close={() => setListed(false)}
         />
       </Show>
-      <Show when={touring() && route().view === "live" && !listed()}>
+      <Show when={touring() && route().view === "live" && !listed() && !live.identity.mustSignIn()}>
         <Tour
           close={() => {
             setTouring(false);

@@ -38,7 +38,12 @@ export function LiveView(props: {
   const right = createMemo(() => layout.size("right", RIGHT));
   const below = createMemo(() => layout.size("below", BELOW));
   const rows = createAfterFirstState(props.live);
-  const NoState = (): JSX.Element => <p class="empty">{words().desk.links.noState}</p>;
+  const NoState = (panel: { readonly name: PanelName }): JSX.Element => (
+    <section class="panel grows">
+      <h2>{words().live.panel[panel.name]}</h2>
+      <p class="empty">{words().desk.links.noState}</p>
+    </section>
+  );
   /** A tab shows its panels alone; a laptop shows all. */
   const Group = (group: { readonly tab: Tab; readonly children: JSX.Element }): JSX.Element => (
     <div
@@ -95,10 +100,10 @@ export function LiveView(props: {
         <Group tab="objects">
           <Panel name="decisions"><Decisions live={props.live} /></Panel>
           <Panel name="weights" grows>
-            <Show when={rows()} fallback={<NoState />}><Weights live={props.live} /></Show>
+            <Show when={rows()} fallback={<NoState name="weights" />}><Weights live={props.live} /></Show>
           </Panel>
           <Panel name="priors" grows>
-            <Show when={rows()} fallback={<NoState />}><Priors live={props.live} author={props.author} onGhost={setGhost} /></Show>
+            <Show when={rows()} fallback={<NoState name="priors" />}><Priors live={props.live} author={props.author} onGhost={setGhost} /></Show>
           </Panel>
         </Group>
         <Group tab="events">
