@@ -351,6 +351,17 @@ fn over_current_and_a_straying_machine_latch() {
 }
 
 #[test]
+fn over_current_latches_while_homing_too() {
+    let mut room = Room::new(None);
+    room.run(0.1);
+    room.ask(RequestKind::Home);
+    room.report.current_amps = [0.0, 5.5];
+    room.run(0.05);
+    assert_eq!(room.engine.mode(), Mode::LatchedStop);
+    assert_eq!(room.engine.snapshot(room.now).stop.unwrap().rule, RuleId(5));
+}
+
+#[test]
 fn three_missed_deadlines_in_a_row_are_a_protective_stop() {
     let mut room = Room::armed();
     for _ in 0..2 {

@@ -153,9 +153,8 @@ impl Supervisor {
         self.set(RuleId(4), breach_if(pressed.is_some()), now, events, reason);
     }
 
-    /// Forget what counts towards R5, R6 and R7: the commanded state was taken anew from the measured one.
-    pub fn tracking_restarted(&mut self) {
-        self.over_current = Held::default();
+    /// Forget what counts towards R6 and R7: the commanded state was taken anew from the measured one.
+    fn tracking_restarted(&mut self) {
         self.following_error = Held::default();
         self.velocity_error = Held::default();
         self.stall = None;
