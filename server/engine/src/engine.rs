@@ -13,7 +13,7 @@ use std::sync::Arc;
 use crate::event::{Event, EventKind};
 use crate::intention::{IntentionParameters, RuleName};
 use crate::machine::{Drive, Homing, Limits, MachineReport, Travel};
-use crate::mode::Mode;
+use crate::mode::{self, Mode, Trigger};
 use crate::motion::MotionName;
 use crate::motion::standing::StandingName;
 use crate::observation::{Observation, PersonId};
@@ -276,34 +276,32 @@ impl Engine {
             arena_confirmed_clear: self.arena_confirmed_clear,
             travel: &self.config.travel,
         };
-        let demand = self.supervisor.watch(&watched, &mut self.pending);
-        let moves = matches!(self.mode, Mode::Homing | Mode::Following | Mode::ProtectiveStop);
-        let powered = moves || self.mode == Mode::Ready;
-        match demand {
-            Some(Demand::Fault(rule)) if self.mode != Mode::Faulted && self.mode != Mode::LatchedStop => {
-                let reason = self.supervisor.rule(rule).reason.clone();
-                self.enter_stop(Mode::Faulted, rule, reason, now);
-            }
-            Some(Demand::LatchedStop(rule)) if powered => {
-                let reason = self.supervisor.rule(rule).reason.clone();
-                self.latch(rule, reason, now);
-            }
-            Some(Demand::ProtectiveStop(rule)) if moves => {
+        match self.supervisor.watch(&watched, &mut self.pending) {
+            Some(Demand::Fault(rule)) => self.trigger(Trigger::Fault, rule, now),
+            Some(Demand::LatchedStop(rule)) => self.trigger(Trigger::LatchedDemand, rule, now),
+            Some(Demand::ProtectiveStop(rule)) => {
                 self.quiet_since = None;
-                if self.mode != Mode::ProtectiveStop {
-                    self.resumes = self.mode;
-                    let reason = self.supervisor.rule(rule).reason.clone();
-                    self.enter_stop(Mode::ProtectiveStop, rule, reason, now);
-                }
+                self.trigger(Trigger::ProtectiveDemand, rule, now);
             }
-            None if self.mode == Mode::ProtectiveStop => {
+            None => {
                 let since = *self.quiet_since.get_or_insert(now);
-                if now - since >= self.parameters.clears_after {
-                    self.enter(self.resumes, None, Reason::ProtectiveStopOver, now);
+                if now - since >= self.parameters.clears_after
+                    && let Some(to) = mode::react(self.mode, Trigger::DemandGone, self.resumes)
+                {
+                    self.enter(to, None, Reason::ProtectiveStopOver, now);
                 }
             }
-            _ => {}
         }
+    }
+
+    /// What a breached rule does to the mode.
+    fn trigger(&mut self, trigger: Trigger, rule: RuleId, now: Time) {
+        let Some(to) = mode::react(self.mode, trigger, self.resumes) else { return };
+        let reason = self.supervisor.rule(rule).reason.clone();
+        if to == Mode::ProtectiveStop {
+            self.resumes = self.mode;
+        }
+        self.enter_stop(to, rule, reason, now);
     }
 
     fn progress_homing(&mut self, now: Time) {
@@ -311,17 +309,15 @@ impl Engine {
         // The machine says `Homed` of an earlier run until it has taken up the command.
         let begun = now - self.mode_since > self.parameters.link;
         let rests = self.rests(now);
-        match (self.mode, homing) {
-            (Mode::Homing, Some(Homing::Homed)) if begun && rests => {
-                self.enter(Mode::Ready, None, Reason::HomingDone, now)
-            }
-            (
-                Mode::Ready | Mode::Following | Mode::ProtectiveStop,
-                Some(Homing::NotHomed | Homing::Failed),
-            ) if self.governor.is_some() => {
-                self.latch(RuleId(7), Reason::HomeLost, now);
-            }
-            _ => {}
+        let trigger = match homing {
+            Some(Homing::Homed) if begun && rests => Trigger::Homed,
+            Some(Homing::NotHomed | Homing::Failed) if self.governor.is_some() => Trigger::HomeLost,
+            _ => return,
+        };
+        match mode::react(self.mode, trigger, self.resumes) {
+            Some(Mode::LatchedStop) => self.latch(RuleId(7), Reason::HomeLost, now),
+            Some(to) => self.enter(to, None, Reason::HomingDone, now),
+            None => {}
         }
     }
 

@@ -1,4 +1,4 @@
-//! The state of the machine as one table: every mode times every request.
+//! The state of the machine as one table: every mode times every request and every trigger.
 //!
 //! ```text
 //!              home               homed             arm
@@ -6,9 +6,11 @@
 //!     ▲  ▲               │                 │                 │               │
 //!     │  └── disarm ─────┴─────────────────┴─────────────────┴───────────────┘
 //!     │                         stop, R4..R7, from anywhere ─▶ latched_stop
-//!     └── reset (cause gone) ── latched_stop, faulted ◀─ R8, homing failed
+//!     └── reset (cause gone) ── latched_stop, faulted ◀─ R8
 //! ```
 //!
+//! A protective stop that came while homing goes back to homing. `tests/modes.rs` explores every state, and
+//! `covr-wire` writes the table into `server/SAFETY.md`.
 //! It never moves anything: it says what is allowed. Reset starts nothing; arming is a second act.
 
 use crate::reason::Reason;
@@ -45,6 +47,23 @@ pub enum RequestKind {
     Stop,
     /// Leave a latched stop or a fault; starts nothing.
     Reset,
+}
+
+/// What happens to the machine without anybody's asking.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Trigger {
+    /// A rule demands a protective stop.
+    ProtectiveDemand,
+    /// No rule has demanded one for a while.
+    DemandGone,
+    /// A rule demands a latched stop.
+    LatchedDemand,
+    /// A rule says that the machine cannot be trusted to obey.
+    Fault,
+    /// The machine has homed, and rests.
+    Homed,
+    /// The machine does not know its place any more.
+    HomeLost,
 }
 
 impl Mode {
@@ -87,6 +106,18 @@ impl RequestKind {
             Self::Reset => "reset",
         }
     }
+}
+
+impl Trigger {
+    /// Every trigger, in the order of the table.
+    pub const ALL: [Self; 6] = [
+        Self::ProtectiveDemand,
+        Self::DemandGone,
+        Self::LatchedDemand,
+        Self::Fault,
+        Self::Homed,
+        Self::HomeLost,
+    ];
 }
 
 /// What the table needs to know beside the mode.
@@ -142,6 +173,22 @@ pub fn respond(mode: Mode, request: RequestKind, conditions: &Conditions) -> Res
         },
         (ProtectiveStop, Reset) => Refuse(Reason::ClearsByItself),
         (Disarmed | Homing | Ready | Following, Reset) => AlreadySo(Reason::NothingToReset),
+    }
+}
+
+/// The table: every mode times every trigger. The mode to go to; none: the mode stays.
+///
+/// `resumes` is where a protective stop goes back to: the mode that it came in.
+pub fn react(mode: Mode, trigger: Trigger, resumes: Mode) -> Option<Mode> {
+    use Mode::{Disarmed, Faulted, Following, Homing, LatchedStop, ProtectiveStop, Ready};
+    match (trigger, mode) {
+        (Trigger::ProtectiveDemand, Homing | Following) => Some(ProtectiveStop),
+        (Trigger::DemandGone, ProtectiveStop) => Some(resumes),
+        (Trigger::LatchedDemand, Homing | Ready | Following | ProtectiveStop) => Some(LatchedStop),
+        (Trigger::Fault, Disarmed | Homing | Ready | Following | ProtectiveStop) => Some(Faulted),
+        (Trigger::Homed, Homing) => Some(Ready),
+        (Trigger::HomeLost, Ready | Following | ProtectiveStop) => Some(LatchedStop),
+        _ => None,
     }
 }
 
