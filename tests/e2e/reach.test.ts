@@ -62,15 +62,15 @@ function recordedOutcomes(watched: Dashboard, reaches: readonly Reach[]): Outcom
   return outcomes;
 }
 
-/** A made-up person reaches an object when the server says that the hand is about there, having been further off before. */
+/** A made-up person reaches an object when their head is an arm's length from it, having been further off before. */
 function madeUpOutcomes(snapshots: readonly Snapshot[]): Outcome[] {
   const outcomes: Outcome[] = [];
   const away = new Set<string>();
   for (const snapshot of snapshots) {
-    for (const { id, touch_secs } of snapshot.objects) {
-      if (touch_secs === null) continue;
-      if (touch_secs > AWAY_SECS) away.add(id);
-      else if (touch_secs <= THERE_SECS && away.delete(id)) outcomes.push(outcomeIn(snapshot, id));
+    for (const { id, distance_m } of snapshot.objects) {
+      if (distance_m === null) continue;
+      if (distance_m > AWAY_M) away.add(id);
+      else if (distance_m <= REACHED_M && away.delete(id)) outcomes.push(outcomeIn(snapshot, id));
     }
   }
   return outcomes;
@@ -85,9 +85,9 @@ function outcomeIn(snapshot: Snapshot, object: string): Outcome {
 const REACHES = 10;
 /** The evaluation's own tolerance: the column within 10 cm of its place is there. */
 const THERE_M = 0.1;
-const AWAY_SECS = 0.5;
+const AWAY_M = 0.95;
 /** Made-up people stop where they can just reach, give or take ten centimetres. */
-const THERE_SECS = 0.15;
+const REACHED_M = 0.63;
 const BALLS = [
   { id: "near-left", position: [0.8, 0.8, 1.2] },
   { id: "near-right", position: [3.2, 0.8, 1.2] },

@@ -322,14 +322,17 @@ export class MockMachine {
       const looked = Math.exp(Math.cos(Math.atan2(dy, dx) - person.yaw_rad) - 1);
       const offset = this.scene.props?.find((prop) => prop.id === object.prop)?.offset ?? [0, 0];
       const place: [number, number] = [object.position[0] - offset[0], object.position[1] - offset[1]];
+      const arrivalSecs = Math.hypot(place[0] - this.#column[0], place[1] - this.#column[1]) / 0.9;
+      const touchSecs = Math.max(0, away - 0.6) / 0.7;
       return {
         id: object.id,
         weight: object.enabled ? prior * (0.175 / (1 + away) + 0.825 * looked) : 0,
         probability: 0,
         prior,
         column_place_m: place,
-        arrival_secs: Math.hypot(place[0] - this.#column[0], place[1] - this.#column[1]) / 0.9,
-        touch_secs: Math.max(0, away - 0.6) / 0.7,
+        arrival_secs: arrivalSecs,
+        touch_secs: touchSecs,
+        late_by_s: arrivalSecs - touchSecs,
         angle_rad: Math.abs(Math.atan2(Math.sin(Math.atan2(dy, dx) - person.yaw_rad), Math.cos(Math.atan2(dy, dx) - person.yaw_rad))),
         distance_m: away,
       };

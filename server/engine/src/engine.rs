@@ -4,6 +4,7 @@
 //! the mode says what the machine does; in `following` motion proposes and safety disposes.
 
 mod following;
+mod foretold;
 pub mod outlook;
 mod requests;
 mod view;
@@ -30,6 +31,7 @@ use crate::snapshot::{RuleId, StopCause};
 use crate::time::{Span, Time};
 use following::Following;
 pub use following::{IN_PLACE_M, IN_PLACE_MPS};
+pub use foretold::Foretold;
 pub use requests::{Answer, Outcome, Request};
 
 /// What the engine is built with. Right once built.

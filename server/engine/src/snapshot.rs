@@ -198,10 +198,13 @@ pub struct ObjectState {
     pub prior: f64,
     /// Where the column's centre must stand to serve it.
     pub column_place: Floor,
-    /// When the column could be there at its limits, s from now.
+    /// When the column is in place for it, s from now: by the plan that it drives now where that leads there, people in
+    /// the way and soft start included, else at its limits from rest; 0 while it is in place (within 0.1 m, at rest).
     pub arrival_secs: f64,
-    /// When the visitor's head could be within reach of it at their present pace, s from now; none without a visitor.
+    /// When the visitor's hand could be at it, s from now; none without a visitor.
     pub touch_secs: Option<f64>,
+    /// How much later than the hand the column is in place, s; negative: earlier; none without a visitor.
+    pub late_by_secs: Option<f64>,
     /// Between the visitor's view axis and it, rad; none without a visitor.
     pub angle_rad: Option<f64>,
     /// From the visitor's head to its surface, m; none without a visitor.

@@ -79,6 +79,7 @@ pub(crate) fn snapshot() -> Snapshot {
         column_place: Floor::new(if id == "kettle" { 0.9 } else { 3.0 }, 3.0),
         arrival_secs: 2.0,
         touch_secs,
+        late_by_secs: touch_secs.map(|touch| 2.0 - touch),
         angle_rad: touch_secs.map(|_| 0.07),
         distance_m: touch_secs.map(|_| 1.2),
     };

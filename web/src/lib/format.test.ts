@@ -1,6 +1,6 @@
 import { describe, expect, it, onTestFinished, vi } from "vitest";
 import { useLanguage } from "../i18n";
-import { decimal, lateBySecs, millis, modeWords, pair, percent, span, timeOfDay } from "./format";
+import { decimal, millis, modeWords, pair, percent, span, timeOfDay } from "./format";
 
 describe("values", () => {
   it.each([
@@ -32,11 +32,5 @@ describe("values", () => {
     expect(decimal(-0.5, 2)).toBe("-0,50");
     expect(pair([1.25, 3], 1)).toBe("1,3 ; 3,0");
     expect(span(0.42)).toBe("0,4 s");
-  });
-
-  it("are late by what the column comes after the hand", () => {
-    expect(lateBySecs(1.5, 1)).toBe(0.5);
-    expect(lateBySecs(0.5, 1)).toBe(-0.5);
-    expect(lateBySecs(0.5, null)).toBeNull();
   });
 });

@@ -56,14 +56,6 @@ export function dayAndTime(moment: string): string {
   return `${date.getFullYear()}-${pad(date.getMonth() + 1)}-${pad(date.getDate())} ${timeOfDay(moment)}`;
 }
 
-/**
- * By how much the column would come after the hand, s; negative when it comes before. Null when nobody is there to
- * touch.
- */
-export function lateBySecs(arrivalSecs: number, touchSecs: number | null): number | null {
-  return touchSecs === null ? null : arrivalSecs - touchSecs;
-}
-
 function pad(value: number): string {
   return String(value).padStart(2, "0");
 }

@@ -2,7 +2,7 @@
 import { createMemo, createSignal, For, Show, type JSX } from "solid-js";
 import type { ObjectState, SceneDocument } from "../api/types";
 import { words } from "../i18n";
-import { decimal, lateBySecs, percent } from "../lib/format";
+import { decimal, percent } from "../lib/format";
 import { labelOf } from "../lib/labels";
 import { createRing, nowMicros } from "../live/ring";
 import type { Live } from "../live/live";
@@ -94,7 +94,7 @@ function Row(props: {
   readonly bars: () => readonly (Bar | null)[];
   readonly served: () => readonly number[];
 }): JSX.Element {
-  const late = (): number | null => lateBySecs(props.object.arrival_secs, props.object.touch_secs);
+  const late = (): number | null => props.object.late_by_s;
   const isLate = (): boolean => (late() ?? 0) >= LATE_FROM_SECS;
   return (
     <li class="weight-row" classList={{ predicted: props.committed, off: !props.enabled }} data-testid={`object-${props.object.id}`}>

@@ -270,6 +270,11 @@ impl Following {
         self.planner.arrives_in_secs().filter(|_| self.motion == MotionName::Planner)
     }
 
+    /// The same; past the horizon, and by what is left there, where it does not arrive.
+    pub fn foreseen_arrival_secs(&self) -> Option<f64> {
+        Some(self.planner.arrival_secs()).filter(|_| self.motion == MotionName::Planner)
+    }
+
     /// The belief about the served visitor.
     pub fn belief(&self) -> Option<&Belief> {
         self.served_visitor().map(|v| &v.belief)

@@ -1,5 +1,6 @@
 //! The engine as a whole, on virtual time, in front of a machine that does exactly what it is told.
 
+mod foretold;
 mod modes;
 mod shown;
 

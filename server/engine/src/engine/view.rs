@@ -149,32 +149,27 @@ impl Engine {
     }
 
     fn objects(&self) -> Vec<ObjectState> {
-        let from = self.report.map_or(Floor::new(0.0, 0.0), |r| r.position);
         let belief = self.following.belief();
         let total = belief.map_or(0.0, Belief::total);
         let sights = self.following.sights();
-        let visitor = self.following.serves().and_then(|id| self.person(id));
-        let pace_mps = visitor.map_or(BRISK_MPS, |v| v.velocity().norm().max(BRISK_MPS));
         let objects = self.scene.objects().iter().zip(&self.scene.spec().objects).enumerate();
         objects
-            .map(|(i, (object, spec))| {
+            .filter_map(|(i, (object, spec))| {
                 let weight = belief.and_then(|b| b.weights.get(i)).copied().unwrap_or(0.0);
                 let sight = sights.and_then(|sights| sights.get(i));
-                let touch_secs = sight.map(|sight| {
-                    let left_m = (sight.distance_m - ARM_M).max(0.0);
-                    left_m / pace_mps
-                });
-                ObjectState {
+                let foretold = self.foretell(i)?;
+                Some(ObjectState {
                     id: spec.id.clone(),
                     weight,
                     probability: if total > 0.0 { weight / total } else { 0.0 },
                     prior: self.priors[i],
                     column_place: object.column_place(),
-                    arrival_secs: arrival_secs(from, object.column_place(), &self.config.limits),
-                    touch_secs,
+                    arrival_secs: foretold.arrival_secs,
+                    touch_secs: foretold.touch_secs,
+                    late_by_secs: foretold.late_by_secs(),
                     angle_rad: sight.map(|sight| sight.angle_rad),
                     distance_m: sight.map(|sight| sight.distance_m),
-                }
+                })
             })
             .collect()
     }
@@ -187,7 +182,3 @@ fn arrival_secs(from: Floor, place: Floor, limits: &Limits) -> f64 {
 
 /// Nearer than this the column is there: the following error of a healthy machine, m.
 const THERE_M: f64 = 0.01;
-/// The head is this far from a surface when the hand is at it (recorded people: 0.6 m to the object's centre), m.
-const ARM_M: f64 = 0.5;
-/// Somebody who stands may walk off at once: the 95th percentile of recorded people's speed, m/s.
-const BRISK_MPS: f64 = 0.87;

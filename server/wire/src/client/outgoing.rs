@@ -87,7 +87,7 @@ impl Prediction {
             object: object.id.clone(),
             probability: object.probability,
             arrival_secs: object.arrival_secs,
-            late_by_secs: object.touch_secs.map(|touch| object.arrival_secs - touch),
+            late_by_s: object.late_by_secs,
         })
     }
 }
@@ -143,7 +143,7 @@ mod tests {
         let mut state = sample::snapshot();
         let told = Prediction::new(&state).unwrap();
         assert_eq!(told.object, "kettle");
-        assert_eq!(told.late_by_secs, Some(0.5));
+        assert_eq!(told.late_by_s, Some(0.5));
         state.column.committed = None;
         assert_eq!(Prediction::new(&state).unwrap().object, "lamp");
         state.column.serves = None;

@@ -128,10 +128,11 @@ pub struct Prediction {
     pub object: String,
     /// The rule's probability of it, 0 to 1.
     pub probability: f64,
-    /// When the column could be there, s from `at_micros`.
+    /// When the column is in place for it, s from `at_micros`: by the way that it takes now, people in the way included,
+    /// where that leads there, else at its limits; 0 while it is in place.
     pub arrival_secs: f64,
-    /// How much later than the visitor that is, s; negative: earlier; null when nobody is near enough to say.
-    pub late_by_secs: Option<f64>,
+    /// How much later than the hand that is, s; negative: earlier; null where no hand is foreseen.
+    pub late_by_s: Option<f64>,
 }
 
 /// Whether the machine is stopped, and why.

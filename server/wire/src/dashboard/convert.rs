@@ -146,6 +146,7 @@ impl From<&engine::ObjectState> for Object {
             column_place_m: floor(object.column_place),
             arrival_secs: object.arrival_secs,
             touch_secs: object.touch_secs,
+            late_by_s: object.late_by_secs,
             angle_rad: object.angle_rad,
             distance_m: object.distance_m,
         }

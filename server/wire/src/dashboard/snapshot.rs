@@ -258,10 +258,13 @@ pub struct Object {
     pub prior: f64,
     /// Where the column's centre must stand.
     pub column_place_m: [f64; 2],
-    /// Seconds until the column could be there.
+    /// Seconds until the column is in place for it: by the way that it takes now, people in the way included, where that
+    /// leads there, else at its limits; 0 while it is in place.
     pub arrival_secs: f64,
-    /// Seconds until the visitor could touch it; null without a visitor.
+    /// Seconds until the visitor's hand could be at it; null without a visitor.
     pub touch_secs: Option<f64>,
+    /// How much later than the hand the column is in place, s; negative: earlier; null without a visitor.
+    pub late_by_s: Option<f64>,
     /// Between the visitor's view axis and it, rad; null without a visitor.
     pub angle_rad: Option<f64>,
     /// From the visitor's head to its surface, m; null without a visitor.

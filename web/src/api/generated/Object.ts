@@ -25,13 +25,18 @@ prior: number,
  */
 column_place_m: [number, number], 
 /**
- * Seconds until the column could be there.
+ * Seconds until the column is in place for it: by the way that it takes now, people in the way included, where that
+ * leads there, else at its limits; 0 while it is in place.
  */
 arrival_secs: number, 
 /**
- * Seconds until the visitor could touch it; null without a visitor.
+ * Seconds until the visitor's hand could be at it; null without a visitor.
  */
 touch_secs: number | null, 
+/**
+ * How much later than the hand the column is in place, s; negative: earlier; null without a visitor.
+ */
+late_by_s: number | null, 
 /**
  * Between the visitor's view axis and it, rad; null without a visitor.
  */

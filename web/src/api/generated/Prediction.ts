@@ -17,10 +17,11 @@ object: string,
  */
 probability: number, 
 /**
- * When the column could be there, s from `at_micros`.
+ * When the column is in place for it, s from `at_micros`: by the way that it takes now, people in the way included,
+ * where that leads there, else at its limits; 0 while it is in place.
  */
 arrival_secs: number, 
 /**
- * How much later than the visitor that is, s; negative: earlier; null when nobody is near enough to say.
+ * How much later than the hand that is, s; negative: earlier; null where no hand is foreseen.
  */
-late_by_secs: number | null, };
+late_by_s: number | null, };
