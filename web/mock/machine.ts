@@ -333,6 +333,7 @@ export class MockMachine {
         arrival_secs: arrivalSecs,
         touch_secs: touchSecs,
         late_by_s: arrivalSecs - touchSecs,
+        in_time_probability: 1 / (1 + Math.exp((arrivalSecs - touchSecs) / 0.5)),
         angle_rad: Math.abs(Math.atan2(Math.sin(Math.atan2(dy, dx) - person.yaw_rad), Math.cos(Math.atan2(dy, dx) - person.yaw_rad))),
         distance_m: away,
       };

@@ -2,6 +2,7 @@
 //!
 //! It proposes velocities, best first. It never makes a command: safety takes the first proposal that it can allow.
 
+pub mod arrival;
 pub mod foresight;
 pub mod planner;
 pub mod proxy;

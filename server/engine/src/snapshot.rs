@@ -205,6 +205,8 @@ pub struct ObjectState {
     pub touch_secs: Option<f64>,
     /// How much later than the hand the column is in place, s; negative: earlier; none without a visitor.
     pub late_by_secs: Option<f64>,
+    /// The probability that it is in place before the hand, 0 to 1; none without a visitor.
+    pub in_time_probability: Option<f64>,
     /// Between the visitor's view axis and it, rad; none without a visitor.
     pub angle_rad: Option<f64>,
     /// From the visitor's head to its surface, m; none without a visitor.

@@ -5,6 +5,7 @@ use super::following::{IN_PLACE_M, IN_PLACE_MPS};
 use crate::frames::{Floor, Planar};
 use crate::intention;
 use crate::mode::Mode;
+use crate::motion::arrival::in_time_probability;
 use crate::motion::travel_secs;
 
 /// An object, should the served visitor mean it.
@@ -15,12 +16,21 @@ pub struct Foretold {
     pub arrival_secs: f64,
     /// When the visitor's hand could be at it, s from now; none without a visitor.
     pub touch_secs: Option<f64>,
+    /// The column comes only while the engine follows.
+    follows: bool,
 }
 
 impl Foretold {
     /// How much later than the hand the column is in place, s; negative: earlier; none without a visitor.
     pub fn late_by_secs(&self) -> Option<f64> {
         self.touch_secs.map(|touch| self.arrival_secs - touch)
+    }
+
+    /// The probability that the column is in place before the hand, 0 to 1: 0 for what it is not in place for while it
+    /// does not follow; none without a visitor.
+    pub fn in_time_probability(&self) -> Option<f64> {
+        let comes = self.follows || self.arrival_secs == 0.0;
+        self.touch_secs.map(|touch| if comes { in_time_probability(self.arrival_secs, touch) } else { 0.0 })
     }
 }
 
@@ -31,7 +41,8 @@ impl Engine {
         let visitor = self.following.serves().and_then(|id| self.person(id));
         let sight = self.following.sights().and_then(|sights| sights.get(object));
         let touch_secs = visitor.zip(sight).map(|(v, sight)| intention::touch_secs(sight, v.velocity()));
-        Some(Foretold { arrival_secs: self.arrives_in_secs(place), touch_secs })
+        let follows = self.mode == Mode::Following;
+        Some(Foretold { arrival_secs: self.arrives_in_secs(place), touch_secs, follows })
     }
 
     fn arrives_in_secs(&self, place: Floor) -> f64 {

@@ -88,6 +88,7 @@ impl Prediction {
             probability: object.probability,
             arrival_secs: object.arrival_secs,
             late_by_s: object.late_by_secs,
+            in_time_probability: object.in_time_probability,
         })
     }
 }
@@ -143,7 +144,7 @@ mod tests {
         let mut state = sample::snapshot();
         let told = Prediction::new(&state).unwrap();
         assert_eq!(told.object, "kettle");
-        assert_eq!(told.late_by_s, Some(0.5));
+        assert_eq!((told.late_by_s, told.in_time_probability), (Some(0.5), Some(0.25)));
         state.column.committed = None;
         assert_eq!(Prediction::new(&state).unwrap().object, "lamp");
         state.column.serves = None;

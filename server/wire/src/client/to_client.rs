@@ -133,6 +133,9 @@ pub struct Prediction {
     pub arrival_secs: f64,
     /// How much later than the hand that is, s; negative: earlier; null where no hand is foreseen.
     pub late_by_s: Option<f64>,
+    /// The probability that the column is in place before the hand, 0 to 1; 1 while it is in place, 0 while the machine is
+    /// not following and it is not; null where no hand is foreseen.
+    pub in_time_probability: Option<f64>,
 }
 
 /// Whether the machine is stopped, and why.

@@ -147,6 +147,7 @@ impl From<&engine::ObjectState> for Object {
             arrival_secs: object.arrival_secs,
             touch_secs: object.touch_secs,
             late_by_s: object.late_by_secs,
+            in_time_probability: object.in_time_probability,
             angle_rad: object.angle_rad,
             distance_m: object.distance_m,
         }

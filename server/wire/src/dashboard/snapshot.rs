@@ -265,6 +265,8 @@ pub struct Object {
     pub touch_secs: Option<f64>,
     /// How much later than the hand the column is in place, s; negative: earlier; null without a visitor.
     pub late_by_s: Option<f64>,
+    /// The probability that it is in place before the hand, 0 to 1; null without a visitor.
+    pub in_time_probability: Option<f64>,
     /// Between the visitor's view axis and it, rad; null without a visitor.
     pub angle_rad: Option<f64>,
     /// From the visitor's head to its surface, m; null without a visitor.

@@ -38,6 +38,10 @@ touch_secs: number | null,
  */
 late_by_s: number | null, 
 /**
+ * The probability that it is in place before the hand, 0 to 1; null without a visitor.
+ */
+in_time_probability: number | null, 
+/**
  * Between the visitor's view axis and it, rad; null without a visitor.
  */
 angle_rad: number | null, 

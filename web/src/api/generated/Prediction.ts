@@ -24,4 +24,9 @@ arrival_secs: number,
 /**
  * How much later than the hand that is, s; negative: earlier; null where no hand is foreseen.
  */
-late_by_s: number | null, };
+late_by_s: number | null, 
+/**
+ * The probability that the column is in place before the hand, 0 to 1; 1 while it is in place, 0 while the machine is
+ * not following and it is not; null where no hand is foreseen.
+ */
+in_time_probability: number | null, };

@@ -14,6 +14,10 @@ fn the_arrival_foretold_knows_who_is_in_the_way() {
     let least_secs = travel_secs(room.column(), place, &Limits::PAPER);
     assert!(told.arrival_secs > least_secs + 1.0, "{told:?}, at its limits {least_secs} s");
     assert!(told.late_by_secs().unwrap() > 1.0, "{told:?}");
+    assert!(told.in_time_probability().unwrap() < 0.2, "{told:?}");
+    room.ask(RequestKind::Disarm);
+    room.run(0.5);
+    assert_eq!(room.engine.foretell(0).unwrap().in_time_probability(), Some(0.0), "it does not come");
 }
 
 #[test]
@@ -23,7 +27,7 @@ fn a_column_in_place_is_there_and_what_is_not_served_is_as_far_as_the_way_to_it(
         room.enter(2.2, 3.5, 0.0);
         room.run(15.0);
         let [left, right] = [0, 1].map(|object| room.engine.foretell(object).unwrap());
-        assert_eq!(left.arrival_secs, 0.0);
+        assert_eq!((left.arrival_secs, left.in_time_probability()), (0.0, Some(1.0)));
         let place = room.engine.scene().objects()[1].column_place();
         assert_eq!(right.arrival_secs, travel_secs(room.column(), place, &Limits::PAPER));
     }
