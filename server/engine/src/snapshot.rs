@@ -207,6 +207,9 @@ pub struct ObjectState {
     pub late_by_secs: Option<f64>,
     /// The probability that it is in place before the hand, 0 to 1; none without a visitor.
     pub in_time_probability: Option<f64>,
+    /// The shift of the virtual object, m, by which it is where its prop will be when the hand comes, within what nobody
+    /// notices; none where the column makes for something else, and where no shift is needed or would serve.
+    pub offset: Option<Planar>,
     /// Between the visitor's view axis and it, rad; none without a visitor.
     pub angle_rad: Option<f64>,
     /// From the visitor's head to its surface, m; none without a visitor.

@@ -131,6 +131,12 @@ impl ClientFrame {
         self.client_direction(Vector3::new(velocity.x, velocity.y, 0.0)).into()
     }
 
+    /// A shift over the room's floor (m) along the client's axes, in metres whatever its unit.
+    pub fn client_shift_m(&self, shift: Planar) -> [f64; 3] {
+        let direction = self.client_direction(Vector3::new(shift.x, shift.y, 0.0));
+        (direction * self.convention.metres_per_unit()).into()
+    }
+
     /// The affine map from the room (x, y, z, 1; m) to the client's convention and unit: three rows of four.
     pub fn client_from_room(&self) -> [[f64; 4]; 3] {
         let origin = self.client_point(&Point::new(0.0, 0.0, 0.0));

@@ -120,7 +120,7 @@ pub fn to_client() -> Vec<ToClient> {
         )),
         ToClient::Error(ClientError::plain(ErrorCode::HelloExpected, "no hello came within 5 s").fatal()),
     ];
-    all.extend(Prediction::new(&state).map(ToClient::Prediction));
+    all.extend(Prediction::new(&state, &frame).map(ToClient::Prediction));
     all
 }
 

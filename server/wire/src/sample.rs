@@ -81,6 +81,7 @@ pub(crate) fn snapshot() -> Snapshot {
         touch_secs,
         late_by_secs: touch_secs.map(|touch| 2.0 - touch),
         in_time_probability: touch_secs.map(|_| 0.25),
+        offset: touch_secs.map(|_| Planar::new(0.01, 0.02)),
         angle_rad: touch_secs.map(|_| 0.07),
         distance_m: touch_secs.map(|_| 1.2),
     };

@@ -187,7 +187,7 @@ async fn write(
                 let column = ColumnNow::new(&now.snapshot, &now.scene, frame);
                 say(&mut sink, encoding, &ToClient::Column(column)).await?;
                 if now.snapshot.at >= next_prediction
-                    && let Some(prediction) = Prediction::new(&now.snapshot)
+                    && let Some(prediction) = Prediction::new(&now.snapshot, frame)
                 {
                     next_prediction = now.snapshot.at + PREDICT_EVERY;
                     say(&mut sink, encoding, &ToClient::Prediction(prediction)).await?;

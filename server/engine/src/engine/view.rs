@@ -168,6 +168,7 @@ impl Engine {
                     touch_secs: foretold.touch_secs,
                     late_by_secs: foretold.late_by_secs(),
                     in_time_probability: foretold.in_time_probability(),
+                    offset: foretold.offset,
                     angle_rad: sight.map(|sight| sight.angle_rad),
                     distance_m: sight.map(|sight| sight.distance_m),
                 })

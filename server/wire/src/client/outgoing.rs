@@ -77,7 +77,7 @@ impl ColumnNow {
 
 impl Prediction {
     /// The object that the rule is committed to, else the most probable one; none while nobody is served.
-    pub fn new(state: &Snapshot) -> Option<Self> {
+    pub fn new(state: &Snapshot, frame: &ClientFrame) -> Option<Self> {
         state.column.serves?;
         let committed = state.column.committed.and_then(|i| state.objects.get(i));
         let probable = || state.objects.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
@@ -89,6 +89,7 @@ impl Prediction {
             arrival_secs: object.arrival_secs,
             late_by_s: object.late_by_secs,
             in_time_probability: object.in_time_probability,
+            offset_m: object.offset.map(|offset| frame.client_shift_m(offset)),
         })
     }
 }
@@ -142,13 +143,17 @@ mod tests {
     #[test]
     fn a_prediction_says_how_late_the_column_is() {
         let mut state = sample::snapshot();
-        let told = Prediction::new(&state).unwrap();
+        let told = Prediction::new(&state, &unreal()).unwrap();
         assert_eq!(told.object, "kettle");
         assert_eq!((told.late_by_s, told.in_time_probability), (Some(0.5), Some(0.25)));
+        // The room's +y is Unreal's left; centimetres there, metres here.
+        let offset = Vector3::from(told.offset_m.unwrap());
+        assert!((offset - Vector3::new(0.01, -0.02, 0.0)).norm() < 1e-9, "{offset}");
         state.column.committed = None;
-        assert_eq!(Prediction::new(&state).unwrap().object, "lamp");
+        let told = Prediction::new(&state, &unreal()).unwrap();
+        assert_eq!((told.object.as_str(), told.offset_m), ("lamp", None));
         state.column.serves = None;
-        assert_eq!(Prediction::new(&state), None);
+        assert_eq!(Prediction::new(&state, &unreal()), None);
     }
 
     #[test]

@@ -28,6 +28,13 @@ impl Following {
         self.last_conflict = self.conflict.map(|conflict| (conflict, Span::ZERO)).or(before);
     }
 
+    /// Where the column comes to rest as things are, from `here`: where it is wanted, or a little short of it; none when
+    /// nobody is served.
+    pub fn rests_at(&self, here: Floor) -> Option<Floor> {
+        let target = self.wish()?.target;
+        Some(if self.stops_short { nearly(here, target) } else { target })
+    }
+
     fn pursue(
         &mut self,
         governor: &mut Governor,

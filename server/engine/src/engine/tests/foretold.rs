@@ -34,3 +34,25 @@ fn a_column_in_place_is_there_and_what_is_not_served_is_as_far_as_the_way_to_it(
     assert_eq!(Room::armed().engine.foretell(2), None);
     assert_eq!(Room::armed().engine.foretell(0).unwrap().late_by_secs(), None, "nobody is there");
 }
+
+#[test]
+fn to_a_prop_that_rests_short_of_its_place_the_virtual_object_can_be_shifted() {
+    // The visitor walks up to "left" while the column comes from the corner, and is there about when it is.
+    let mut offered = 0;
+    for from_x in [1.2, 1.3, 1.4] {
+        let mut room = Room::armed_with(OURS);
+        room.enter(from_x, 3.5, 0.0);
+        room.walk_mps = (0.3, 0.0);
+        let place = room.engine.scene().objects()[0].column_place();
+        while room.head.is_some_and(|(x, ..)| x < 2.85) {
+            room.step();
+            let told = room.engine.foretell(0).unwrap();
+            let Some(offset) = told.offset else { continue };
+            offered += 1;
+            assert!((0.01 - 1e-12..=0.025 + 1e-12).contains(&offset.norm()), "{told:?}");
+            assert!(offset.dot(room.column() - place) > 0.0, "{told:?}");
+            assert_eq!(room.engine.foretell(1).unwrap().offset, None, "nothing comes to it");
+        }
+    }
+    assert!(offered > 0);
+}
