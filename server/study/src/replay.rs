@@ -4,6 +4,7 @@
 //! Time moves when [`ClosedLoop::step`] is called and never otherwise.
 
 mod belief;
+mod foretold;
 mod headset;
 mod link;
 mod session;
@@ -28,6 +29,7 @@ use covr_gantry::sim::faults::Faults;
 use crate::checker::{Checker, Moment, Motion, PersonNow, Rectangle, Rules, Track, Verdict};
 use crate::random::Random;
 pub use belief::{BeliefThen, BeliefTold, LOOKS_BEFORE_REACH_SECS};
+pub use foretold::FORETOLD_BEFORE_REACH_SECS;
 pub use link::{LinkProfile, PoseLink};
 pub use session::{SessionReplay, VisitPlan};
 pub use trial::{Conduct, Glimpse, ReachTrial, TrialOutcome, TrialProblem};

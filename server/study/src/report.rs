@@ -213,6 +213,10 @@ mod tests {
             top1: [("0.0".to_owned(), 0.9), ("1.0".to_owned(), 0.5)].into(),
             top1_wall: BTreeMap::new(),
             log_loss: [("0.0".to_owned(), 0.0), ("1.0".to_owned(), std::f64::consts::LN_2)].into(),
+            said_late: BTreeMap::new(),
+            late_came_true: BTreeMap::new(),
+            in_time_came_true: BTreeMap::new(),
+            in_time_brier: BTreeMap::new(),
         }
     }
 

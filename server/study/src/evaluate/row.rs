@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::blame::Cause;
 use super::plan::SeparationChoice;
 use crate::checker::Verdict;
-use crate::replay::{LOOKS_BEFORE_REACH_SECS, TrialOutcome};
+use crate::replay::{FORETOLD_BEFORE_REACH_SECS, LOOKS_BEFORE_REACH_SECS, TrialOutcome};
 
 /// The whole table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -109,6 +109,15 @@ pub struct Row {
     pub top1_wall: BTreeMap<String, f64>,
     /// Mean negative logarithm of the goal's probability, by seconds before the reach.
     pub log_loss: BTreeMap<String, f64>,
+    /// Share of trials in which the engine said that the column would be late for the goal (`late_by_s` above 0), by
+    /// seconds before the reach.
+    pub said_late: BTreeMap<String, f64>,
+    /// Share of those in which it then was not in place, at rest.
+    pub late_came_true: BTreeMap<String, f64>,
+    /// Share of those in which the engine said that it would be in time and in which it then was.
+    pub in_time_came_true: BTreeMap<String, f64>,
+    /// Mean squared error of the goal's `in_time_probability` (Brier 1950), by seconds before the reach.
+    pub in_time_brier: BTreeMap<String, f64>,
     /// Failed trials by cause; empty where nobody looked for it.
     pub blame: BTreeMap<&'static str, u64>,
 }
@@ -175,6 +184,7 @@ impl Row {
                 top1_wall.insert(name(), mean(walls.iter().map(|best| as_share(*best))));
             }
         }
+        let said = Foretelling::of(&outcomes);
         Self {
             file: key.file,
             task: key.task,
@@ -210,8 +220,55 @@ impl Row {
             top1,
             top1_wall,
             log_loss,
+            said_late: said.late,
+            late_came_true: said.late_came_true,
+            in_time_came_true: said.in_time_came_true,
+            in_time_brier: said.brier,
             blame,
         }
+    }
+}
+
+/// How often what was foretold of the goal came true, by seconds before the reach.
+#[derive(Debug, Default)]
+struct Foretelling {
+    late: BTreeMap<String, f64>,
+    late_came_true: BTreeMap<String, f64>,
+    in_time_came_true: BTreeMap<String, f64>,
+    brier: BTreeMap<String, f64>,
+}
+
+impl Foretelling {
+    /// A moment without a verdict of a kind has no key.
+    fn of(outcomes: &[&TrialOutcome]) -> Self {
+        let mut found = Self::default();
+        for (look, before_secs) in FORETOLD_BEFORE_REACH_SECS.iter().enumerate() {
+            let [mut late, mut in_time, mut errors] = [(); 3].map(|()| Vec::new());
+            for outcome in outcomes {
+                let then = outcome.foretold[look].and_then(|f| f.late_by_secs().zip(f.in_time_probability()));
+                let Some((late_by_secs, probability)) = then else { continue };
+                let came_in_time = if outcome.success { 1.0 } else { 0.0 };
+                if late_by_secs > 0.0 {
+                    late.push(1.0 - came_in_time)
+                } else {
+                    in_time.push(came_in_time)
+                }
+                errors.push((probability - came_in_time).powi(2));
+            }
+            if errors.is_empty() {
+                continue;
+            }
+            let name = || format!("{before_secs:.1}");
+            found.late.insert(name(), late.len() as f64 / errors.len() as f64);
+            found.brier.insert(name(), mean(errors.into_iter()));
+            if !late.is_empty() {
+                found.late_came_true.insert(name(), mean(late.into_iter()));
+            }
+            if !in_time.is_empty() {
+                found.in_time_came_true.insert(name(), mean(in_time.into_iter()));
+            }
+        }
+        found
     }
 }
 

@@ -1,11 +1,13 @@
 //! The table as people and programs read it: for the terminal, as JSON, as CSV.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use serde_json::Value;
 
 use super::blame::Cause;
 use super::row::{Evaluation, LeftOut, Row};
+use crate::replay::{FORETOLD_BEFORE_REACH_SECS, LOOKS_BEFORE_REACH_SECS};
 
 /// As JSON, whole numbers as integers.
 pub fn json(evaluation: &Evaluation) -> Result<String, serde_json::Error> {
@@ -80,6 +82,7 @@ pub fn terminal(evaluation: &Evaluation) -> String {
         );
     }
     text += &causes(evaluation);
+    text += &foretold(evaluation);
     text += &goals(evaluation);
     for LeftOut { file, recordings, because } in &evaluation.left_out {
         let _ = writeln!(text, "left out: {recordings} recordings of {file}: {because}");
@@ -141,10 +144,7 @@ fn causes(evaluation: &Evaluation) -> String {
 fn goals(evaluation: &Evaluation) -> String {
     let mut text = String::new();
     let on = |row: &&Row| row.separation == "on" && row.v_h_mps == GOALS_V_H_MPS;
-    let last_of_file = |row: &&Row| {
-        row.task == "all" || !evaluation.pooled.iter().any(|r| r.file == row.file && r.task == "all")
-    };
-    for row in evaluation.pooled.iter().filter(on).filter(last_of_file) {
+    for row in evaluation.whole_files().filter(on) {
         let least = match (row.rule, row.default, row.prior, row.draw) {
             ("told", ..) => Some(98.5),
             (_, true, "none", "hash") => Some(95.0),
@@ -182,7 +182,38 @@ fn goals(evaluation: &Evaluation) -> String {
     text
 }
 
+/// How often "late" and "in time" came true, a line for each file and rule.
+fn foretold(evaluation: &Evaluation) -> String {
+    let mut text = String::new();
+    for row in evaluation.whole_files().filter(|row| !row.said_late.is_empty()) {
+        let Line { file, rule, motion, separation, prior, draw, .. } = line(row);
+        let _ = write!(text, "foretold {file} {rule} {motion} {separation} {prior} {draw}:");
+        for (number, (before, said_late)) in row.said_late.iter().enumerate() {
+            let share = |of: &BTreeMap<String, f64>| {
+                of.get(before).map_or_else(|| "–".to_owned(), |share| format!("{:.1} %", 100.0 * share))
+            };
+            let _ = write!(
+                text,
+                "{} {before} s before late {:.1} % (true {}), else in time (true {}), Brier {:.3}",
+                if number > 0 { ";" } else { "" },
+                100.0 * said_late,
+                share(&row.late_came_true),
+                share(&row.in_time_came_true),
+                row.in_time_brier.get(before).copied().unwrap_or_default(),
+            );
+        }
+        text.push('\n');
+    }
+    text
+}
+
 impl Evaluation {
+    /// The pools of whole files: every task together where there are several.
+    fn whole_files(&self) -> impl Iterator<Item = &Row> {
+        let has_all = |file: &str| self.pooled.iter().any(|row| row.file == file && row.task == "all");
+        self.pooled.iter().filter(move |row| row.task == "all" || !has_all(&row.file))
+    }
+
     /// The success of the same pool without a prior, over the numbers of objects that can have a wrong one.
     fn without_prior(&self, pool: &Row) -> Option<f64> {
         let like = |row: &&Row| {
@@ -201,6 +232,8 @@ const GOALS_V_H_MPS: f64 = 1.6;
 const WRONG_COSTS: f64 = 5.0;
 /// From the column to the goal at the touch, m.
 const TOUCH_M: f64 = 0.005;
+/// Keys of a row that are looked at [`FORETOLD_BEFORE_REACH_SECS`] before the reach.
+const FORETOLD: [&str; 4] = ["said_late", "late_came_true", "in_time_came_true", "in_time_brier"];
 
 /// Names and values of a row, moments and intervals spread.
 fn flat(row: &Row) -> Result<Vec<(String, String)>, serde_json::Error> {
@@ -221,7 +254,10 @@ fn flat(row: &Row) -> Result<Vec<(String, String)>, serde_json::Error> {
             }
             // A moment that nobody reached has no key; its column stays.
             Value::Object(moments) => {
-                for before_secs in crate::replay::LOOKS_BEFORE_REACH_SECS {
+                let of_foretold = FORETOLD.contains(&name.as_str());
+                let looks: &[f64] =
+                    if of_foretold { &FORETOLD_BEFORE_REACH_SECS } else { &LOOKS_BEFORE_REACH_SECS };
+                for before_secs in looks {
                     let key = format!("{before_secs:.1}");
                     cells.push((format!("{name}_{key}s"), moments.get(&key).map(plain).unwrap_or_default()));
                 }

@@ -10,6 +10,7 @@ use covr_gantry::contract::Simulated;
 
 use super::LinkProfile;
 use super::belief::BeliefWatch;
+use super::foretold::ForetoldWatch;
 use super::trial::{Conduct, Playback, TrialOutcome, TrialProblem, scene_of};
 use super::walk::Walk;
 use super::watch::ReachWatch;
@@ -73,8 +74,7 @@ impl SessionReplay<'_> {
             let mut watch = self.watch(visit, goal, place);
             while playback.at() <= visit.reach.min(self.walk.ends()) {
                 let (at, stepped) = playback.step();
-                let engine = playback.control.engine();
-                watch.see(at, &stepped, engine.belief(), engine.proxy());
+                watch.see(at, &stepped, playback.control.engine());
             }
             playback.control.drain_events().for_each(|event| watch.hear(&event));
             let [true_verdict, commanded_verdict] = playback.control.take_verdicts();
@@ -88,6 +88,8 @@ impl SessionReplay<'_> {
         let wall = targets[visit.goal].view_deg;
         let on_wall = |&index: &usize| targets[index].view_deg == wall;
         let same_wall = wall.map(|_| visit.targets.iter().map(on_wall).collect());
-        ReachWatch::new(place, BeliefWatch::new(goal, same_wall, visit.reach), self.walk.period())
+        let belief = BeliefWatch::new(goal, same_wall, visit.reach);
+        let foretold = ForetoldWatch::new(goal, visit.reach, self.walk.period());
+        ReachWatch::new(place, belief, foretold, self.walk.period())
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use covr_engine::engine::{EngineConfig, Request};
+use covr_engine::engine::{EngineConfig, Foretold, Request};
 use covr_engine::frames::{Floor, Pose, Room};
 use covr_engine::intention::{IntentionParameters, RuleName};
 use covr_engine::machine::Travel;
@@ -15,6 +15,7 @@ use covr_engine::time::{Span, Time};
 use covr_gantry::contract::Simulated;
 
 use super::belief::{BeliefTold, BeliefWatch};
+use super::foretold::{FORETOLD_BEFORE_REACH_SECS, ForetoldWatch};
 use super::walk::Walk;
 use super::watch::ReachWatch;
 use super::{ClosedLoop, LinkProfile, Stepped, TrueHead};
@@ -90,6 +91,8 @@ pub struct TrialOutcome {
     pub proxy_distance_m: f64,
     /// What the rule believed.
     pub belief: BeliefTold,
+    /// What was foretold of the goal, [`FORETOLD_BEFORE_REACH_SECS`] before the reach; none before the beginning.
+    pub foretold: [Option<Foretold>; FORETOLD_BEFORE_REACH_SECS.len()],
     /// Virtual time, s.
     pub simulated_secs: f64,
     /// What the checker says of the true motion.
@@ -157,14 +160,15 @@ impl<'a> ReachTrial<'a> {
         let same_wall = wall.map(|_| self.targets.iter().map(on_wall).collect());
         let place = playback.control.engine().scene().objects()[goal].column_place();
         let belief = BeliefWatch::new(goal, same_wall, self.walk.ends());
-        let mut watch = ReachWatch::new(place, belief, self.walk.period());
+        let foretold = ForetoldWatch::new(goal, self.walk.ends(), self.walk.period());
+        let mut watch = ReachWatch::new(place, belief, foretold, self.walk.period());
         let mut told_from = self.told_from;
         while playback.at() <= self.walk.ends() {
             if told_from.take_if(|from| playback.at() >= *from).is_some() {
                 playback.tell(goal);
             }
             let (at, stepped) = playback.step();
-            watch.see(at, &stepped, playback.control.engine().belief(), playback.control.engine().proxy());
+            watch.see(at, &stepped, playback.control.engine());
             watcher(Glimpse { at, head: playback.head.pose, stepped, control: &playback.control });
         }
         playback.control.drain_events().for_each(|event| watch.hear(&event));
@@ -352,6 +356,8 @@ mod tests {
         let outcome = run(&recording, &[0], start);
         assert!(outcome.success, "{outcome:?}");
         assert!(outcome.in_place_before_reach_secs > 0.5 && outcome.distance_at_reach_m < 0.02);
+        let half_a_second_before = outcome.foretold[0].unwrap();
+        assert_eq!(half_a_second_before.in_time_probability(), Some(1.0), "{outcome:?}");
         // 1.077 m as the crow flies.
         assert!((1.06..1.5).contains(&outcome.column_travel_m), "{}", outcome.column_travel_m);
         let violations = [&outcome.true_verdict, &outcome.commanded_verdict].map(|v| v.violations());
@@ -364,6 +370,9 @@ mod tests {
         // 0.9 s for the walk: faster than the rule lets the column come.
         let outcome = run(&walk(0.9), &[0, 1], Floor::new(3.8, 0.3));
         assert!(!outcome.success && outcome.in_place_before_reach_secs == 0.0, "{outcome:?}");
+        let foretold = outcome.foretold[0].unwrap();
+        assert!(foretold.late_by_secs().unwrap() > 1.0, "{foretold:?}");
+        assert!(outcome.foretold[2].is_none(), "two seconds before, it had not begun");
     }
 
     #[test]

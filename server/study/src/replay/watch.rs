@@ -1,14 +1,15 @@
 //! One reach, watched: where the column was and what the rule believed, until the hand arrived.
 
+use covr_engine::engine::Engine;
 use covr_engine::event::{Event, EventKind};
 use covr_engine::frames::{Floor, Planar};
-use covr_engine::intention::Belief;
 use covr_engine::mode::Mode;
 use covr_engine::safety::vetted::{Action, Vetted};
 use covr_engine::time::{Span, Time};
 
 use super::Stepped;
 use super::belief::BeliefWatch;
+use super::foretold::ForetoldWatch;
 use super::trial::TrialOutcome;
 use crate::checker::Verdict;
 
@@ -17,6 +18,7 @@ use crate::checker::Verdict;
 pub(super) struct ReachWatch {
     place: Floor,
     belief: BeliefWatch,
+    foretold: ForetoldWatch,
     began: Option<Time>,
     before: Option<Floor>,
     arrived_at: Option<Time>,
@@ -30,10 +32,11 @@ pub(super) struct ReachWatch {
 
 impl ReachWatch {
     /// `place` is where the column serves the goal.
-    pub fn new(place: Floor, belief: BeliefWatch, period: Span) -> Self {
+    pub fn new(place: Floor, belief: BeliefWatch, foretold: ForetoldWatch, period: Span) -> Self {
         Self {
             place,
             belief,
+            foretold,
             began: None,
             before: None,
             arrived_at: None,
@@ -46,13 +49,14 @@ impl ReachWatch {
         }
     }
 
-    /// One step, at a moment of the recording.
-    pub fn see(&mut self, at: Time, stepped: &Stepped, belief: Option<&Belief>, proxy: Floor) {
+    /// One step, at a moment of the recording, and the engine after it.
+    pub fn see(&mut self, at: Time, stepped: &Stepped, engine: &Engine) {
         let truth = stepped.truth;
         self.began = self.began.or(Some(at));
-        self.belief.look(at, belief);
+        self.belief.look(at, engine.belief());
+        self.foretold.look(at, engine);
         self.peaks.see(&stepped.command);
-        self.proxy_way.0 += proxy.distance_m(truth.position);
+        self.proxy_way.0 += engine.proxy().distance_m(truth.position);
         self.proxy_way.1 += 1;
         self.column_travel_m += self.before.map_or(0.0, |before| before.distance_m(truth.position));
         self.before = Some(truth.position);
@@ -89,6 +93,7 @@ impl ReachWatch {
             peaks: self.peaks.greatest,
             proxy_distance_m: self.proxy_way.0 / f64::from(self.proxy_way.1.max(1)),
             belief: self.belief.told(),
+            foretold: self.foretold.told(),
             simulated_secs: self.began.map_or(0.0, |began| (ended - began).secs()),
             true_verdict,
             commanded_verdict,

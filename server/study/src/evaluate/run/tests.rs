@@ -53,6 +53,8 @@ fn the_table_is_the_same_for_any_number_of_threads() {
     let told = one.rows.iter().find(|row| row.rule == "told" && row.objects == 0).unwrap();
     assert_eq!((told.trials, told.violations, told.success), (2, 0, 1.0));
     assert_eq!(told.top1["0.0"], 1.0);
+    assert_eq!((told.said_late["0.5"], told.in_time_came_true["0.5"]), (0.0, 1.0));
+    assert!(told.in_time_brier["0.5"] < 0.05 && told.late_came_true.is_empty(), "{told:?}");
     assert!(one.rows.iter().filter(|row| row.default).all(|row| row.rule == "paper-best"));
 }
 
