@@ -47,5 +47,5 @@ function draw() {
   if (column) dot(column.position[0], column.position[1], px(0.15), column.homed ? "steelblue" : "lightgray");
   dot(head.x, head.y, px(0.12), "seagreen");
   if (column) show("state", stop?.stopped ? `stopped: ${stop.reason}` : `${column.mode}, column at ${column.position.map((m) => m.toFixed(2)).join(", ")}`);
-  if (prediction) show("said", `${prediction.object} is next (${Math.round(prediction.probability * 100)} %), column there in ${prediction.arrival_secs.toFixed(1)} s`);
+  if (prediction) show("said", `${prediction.object} is next (${Math.round(prediction.probability * 100)} %), column there in ${prediction.arrival_secs.toFixed(1)} s, in time: ${prediction.in_time_probability === null ? "–" : `${Math.round(prediction.in_time_probability * 100)} %`}`);
 }
