@@ -1,6 +1,7 @@
 //! State, requests, stop, health, the API's own description.
 
 use covr_engine::mode::Mode;
+use covr_server::config::{Input, InputKind, Level};
 use covr_tests::server::{TestServer, problem};
 use covr_tests::{SOON, eventually};
 
@@ -187,4 +188,51 @@ async fn snapshots_come_at_the_configured_rate_while_nobody_asks() {
     let server = TestServer::start().await;
     let first = server.app.control.published().generation;
     server.published("ten more snapshots", SOON, |p| p.generation >= first + 10).await;
+}
+
+#[tokio::test]
+async fn an_intruder_input_is_a_protective_stop_and_a_stop_input_latches_until_it_is_let_go() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let level = |name: &str, text: &str| {
+        let next = folder.path().join("next");
+        std::fs::write(&next, text).unwrap();
+        std::fs::rename(&next, folder.path().join(name)).unwrap();
+    };
+    let input = |name: &str, kind| Input {
+        name: name.into(),
+        kind,
+        source: folder.path().join(name),
+        active: Level::Low,
+        heartbeat_timeout_secs: 10.0,
+    };
+    level("curtain", "1\n");
+    level("button", "1\n");
+    let inputs = vec![input("curtain", InputKind::Intruder), input("button", InputKind::Stop)];
+    let server = TestServer::start_with(|config| config.safety.inputs = inputs).await;
+    server.good("POST", "/api/v1/home", None).await;
+    server.mode(Mode::Ready).await;
+    server.good("POST", "/api/v1/arm", None).await;
+
+    level("curtain", "0\n");
+    server.mode(Mode::ProtectiveStop).await;
+    let state = server.good("GET", "/api/v1/state", None).await;
+    assert_eq!(state["stop"]["rule"], "R12");
+    assert_eq!(state["stop"]["why"]["id"], "intruder");
+    level("curtain", "1\n");
+    server.mode(Mode::Following).await;
+
+    level("button", "0\n");
+    server.mode(Mode::LatchedStop).await;
+    let state = server.good("GET", "/api/v1/state", None).await;
+    assert_eq!(state["stop"]["rule"], "R4");
+    assert_eq!(state["stop"]["why"]["input"], "button");
+    let refused = server.refused(409, "POST", "/api/v1/reset", Some("{\"reason\": \"looked\"}")).await;
+    assert!(refused.detail.contains("button"), "{refused:?}");
+    level("button", "1\n");
+    eventually("the reset is accepted", || async {
+        let reset = server.call("POST", "/api/v1/reset", Some("{\"reason\": \"looked\"}")).await;
+        reset.status().is_success().then_some(())
+    })
+    .await;
+    server.mode(Mode::Disarmed).await;
 }

@@ -3,6 +3,7 @@
 //! Values are right once loaded: each key knows what it accepts, and a refusal names the key, what was
 //! found and what was expected. `COVR_SECTION__KEY` in the environment overrides the file.
 
+mod inputs;
 mod intention;
 mod keys;
 mod load;
@@ -18,6 +19,7 @@ use covr_engine::motion::MotionName;
 use covr_engine::motion::standing::StandingName;
 use covr_wire::dashboard::LinkThresholds;
 
+pub use inputs::{Input, InputKind, Level};
 pub use intention::ParametersRefused;
 pub use keys::{Key, all as keys};
 pub use load::{ConfigError, load, load_text, reference};
@@ -34,6 +36,8 @@ pub struct Config {
     pub control: Control,
     /// The machine.
     pub machine: Machine,
+    /// What watches the arena beside the headsets.
+    pub safety: Safety,
     /// What is known of people.
     pub people: People,
     /// The recording of sessions.
@@ -108,6 +112,13 @@ pub struct Machine {
     pub x: AxisLimits,
     /// The cross rail.
     pub y: AxisLimits,
+}
+
+/// What watches the arena beside the headsets.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Safety {
+    /// Digital inputs.
+    pub inputs: Vec<Input>,
 }
 
 /// Which machine.
@@ -219,6 +230,7 @@ impl Default for Config {
                 x: AxisLimits::PAPER,
                 y: AxisLimits::PAPER,
             },
+            safety: Safety::default(),
             people: People {
                 intention_rule: RuleName::Bayes,
                 intention_parameters: None,

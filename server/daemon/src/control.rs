@@ -30,6 +30,7 @@ use tokio::sync::{mpsc, oneshot, watch};
 pub use stop_lane::{NotReached, StopLane, StopLaneName};
 
 use crate::clock::Clock;
+use crate::inputs::InputLines;
 use crate::recorder::Record;
 use inbox::{Ask, Fact};
 
@@ -39,6 +40,8 @@ pub struct Setup {
     pub engine: Engine,
     /// Moves.
     pub gantry: Box<dyn Gantry>,
+    /// The digital inputs.
+    pub inputs: InputLines,
     /// The server's clock.
     pub clock: Clock,
     /// Control period.

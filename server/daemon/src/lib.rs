@@ -18,6 +18,7 @@ pub mod evaluate;
 pub mod explain;
 pub mod fit;
 pub mod http;
+pub mod inputs;
 pub mod listen;
 pub mod live;
 pub mod logs;

@@ -29,6 +29,7 @@ use crate::clock::Clock;
 use crate::config::{Config, Loaded, MachineKind};
 use crate::control::{Control, Ended, Setup, StopLaneName};
 use crate::http::Limits;
+use crate::inputs::InputLines;
 use crate::listen::{Listening, check_reach, check_tokens, listen, tls};
 use crate::persons::Persons;
 use crate::recorder::{Desk, Recorder};
@@ -105,9 +106,15 @@ impl Server {
             v_h_mps: config.people.v_h_mps,
             latched_because: left_over.latched_because,
         };
+        let of = (config.safety.inputs.clone(), clock);
+        let inputs = tokio::task::spawn_blocking(move || InputLines::start(&of.0, of.1))
+            .await
+            .context("the digital inputs")?
+            .context("a digital input's thread")?;
         let control = Control::start(Setup {
             engine: Engine::new(engine_config, scene),
             gantry,
+            inputs,
             clock,
             period,
             publish_every: Duration::from_secs_f64(1.0 / config.control.publish_hz),

@@ -17,7 +17,7 @@ use crate::machine::{Drive, Homing, Limits, MachineReport, Travel};
 use crate::mode::{self, Mode, Trigger};
 use crate::motion::MotionName;
 use crate::motion::standing::StandingName;
-use crate::observation::{Observation, PersonId};
+use crate::observation::{InputLevel, Inputs, Observation, PersonId};
 use crate::person::Person;
 use crate::reason::Reason;
 use crate::safety::governor::Governor;
@@ -76,6 +76,7 @@ pub struct Engine {
     /// Measured speed when the mode was entered, m/s.
     speed_then_mps: f64,
     arena_confirmed_clear: bool,
+    inputs: Inputs,
     persons: Vec<Person>,
     threats: Vec<Threat>,
     report: Option<MachineReport>,
@@ -103,6 +104,7 @@ impl Engine {
             stop: None,
             speed_then_mps: 0.0,
             arena_confirmed_clear: false,
+            inputs: Inputs::default(),
             persons: Vec::new(),
             threats: Vec::new(),
             report: None,
@@ -151,6 +153,7 @@ impl Engine {
                 self.rests_since = if rests { self.rests_since.or(Some(report.answered_at)) } else { None };
                 self.report = Some(report);
             }
+            Observation::Inputs(inputs) => self.inputs = inputs,
             Observation::DeadlineMissed => self.supervisor.deadline(false),
             Observation::DeadlineMet => self.supervisor.deadline(true),
         }
@@ -166,6 +169,7 @@ impl Engine {
         if self.config.kept_from == KeptFrom::Everybody {
             self.threats.extend(self.persons.iter().filter_map(|p| p.threat(now)));
         }
+        self.heed_stop_input(now);
         self.supervise(now);
         self.progress_homing(now);
         self.keep_up_with_the_machine(now);
@@ -275,6 +279,7 @@ impl Engine {
             commanded_at: self.stepped_at.unwrap_or(now),
             homes: self.mode == Mode::Homing,
             persons: &self.persons,
+            intruder: &self.inputs.intruder,
             arena_confirmed_clear: self.arena_confirmed_clear,
             travel: &self.config.travel,
         };
@@ -293,6 +298,24 @@ impl Engine {
                     self.enter(to, None, Reason::ProtectiveStopOver, now);
                 }
             }
+        }
+    }
+
+    /// A digital input asks for the software stop (R4), for as long as it is active.
+    fn heed_stop_input(&mut self, now: Time) {
+        if let Some(reason) = self.stop_input()
+            && self.mode != Mode::LatchedStop
+        {
+            self.latch(RuleId(4), reason, now);
+        }
+    }
+
+    /// Why a digital input asks for a stop now.
+    fn stop_input(&self) -> Option<Reason> {
+        match &self.inputs.stop {
+            InputLevel::Absent | InputLevel::Inactive => None,
+            InputLevel::Active(input) => Some(Reason::StopInput(input.clone())),
+            InputLevel::Silent(input) => Some(Reason::InputSilent(input.clone())),
         }
     }
 

@@ -1,5 +1,7 @@
 //! What reaches the engine from outside: facts with the time at which they were true.
 
+use std::sync::Arc;
+
 use crate::frames::{Pose, Room};
 use crate::machine::MachineReport;
 use crate::time::Time;
@@ -21,6 +23,29 @@ pub struct PoseSample {
     pub worn: bool,
 }
 
+/// What the digital inputs of one kind say together: the first that is not inactive, by its name.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum InputLevel {
+    /// There is none of this kind.
+    #[default]
+    Absent,
+    /// All are inactive.
+    Inactive,
+    /// This one is active.
+    Active(Arc<str>),
+    /// This one gives no good word: it counts as active.
+    Silent(Arc<str>),
+}
+
+/// What the digital inputs say.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Inputs {
+    /// Inputs that stop (R4).
+    pub stop: InputLevel,
+    /// Inputs that notice somebody whom nobody tracks (R12).
+    pub intruder: InputLevel,
+}
+
 /// A fact.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Observation {
@@ -38,6 +63,8 @@ pub enum Observation {
     ClientBack(PersonId),
     /// What the machine says, once a period.
     Machine(MachineReport),
+    /// What the digital inputs say; it holds until the next.
+    Inputs(Inputs),
     /// The control loop began a step more than one period late (R9).
     DeadlineMissed,
     /// The control loop began a step in time.

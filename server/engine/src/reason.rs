@@ -1,6 +1,8 @@
 //! Why something is so, as data: which of the known reasons, with its values. The sentence is made by whoever shows it, in
 //! the language of its reader.
 
+use std::sync::Arc;
+
 use crate::mode::{Mode, RequestKind};
 use crate::observation::PersonId;
 use crate::snapshot::RuleId;
@@ -64,6 +66,10 @@ pub enum Reason {
     SoftwareStop(String),
     /// R4: the last run ended in a latched stop; the record that it left, as it was given to the engine.
     LastRunLatched(String),
+    /// R4: this digital input, which stops, is active.
+    StopInput(Arc<str>),
+    /// R4, R12: this digital input gives no good word, which counts as active.
+    InputSilent(Arc<str>),
     /// R5: the greatest motor current, and its limit, A.
     MotorCurrent {
         /// Greatest of the axes, A.
@@ -97,6 +103,12 @@ pub enum Reason {
     StepsInTime,
     /// R9: so many steps in a row began late.
     StepsLate(u32),
+    /// R12: no input that notices intruders is set up.
+    NoIntruderInput,
+    /// R12: every input that notices intruders is inactive.
+    NoIntruder,
+    /// R12: this input notices somebody whom nobody tracks.
+    Intruder(Arc<str>),
     /// R16: people are tracked, or the arena was confirmed clear.
     ArenaAccountedFor,
     /// R16: nobody is tracked and nobody has confirmed that the arena is clear.

@@ -38,6 +38,8 @@ pub enum Accepts {
     Address,
     /// Origins of pages.
     Origins,
+    /// Digital inputs.
+    Inputs,
     /// `[min_x, min_y, max_x, max_y]`, each side at least 0.5 m.
     Rectangle,
     /// `[x, y, z]`, each at most 100 m.
@@ -62,6 +64,11 @@ impl fmt::Display for Accepts {
             Self::Origins => {
                 write!(f, "a list of texts such as \"https://lab.example:8443\", \"file://\" or \"null\"")
             }
+            Self::Inputs => write!(
+                f,
+                "a list of inputs such as {{name = \"curtain\", kind = \"intruder\", source = \"/dev/ttyUSB0\"}}, each of another name; \
+                 kind \"stop\" or \"intruder\"; active \"low\" (usual) or \"high\"; heartbeat_timeout_secs from 0.05 to 10 (usual 0.5)"
+            ),
             Self::Rectangle => {
                 write!(f, "four numbers [min_x, min_y, max_x, max_y], each side at least 0.5 m")
             }

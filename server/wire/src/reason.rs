@@ -114,6 +114,16 @@ pub enum Reason {
         /// Why, where the record tells.
         because: Option<Box<Reason>>,
     },
+    /// R4: a digital input that stops is active.
+    StopInput {
+        /// Its name.
+        input: String,
+    },
+    /// R4, R12: a digital input gives no good word, which counts as active.
+    InputSilent {
+        /// Its name.
+        input: String,
+    },
     /// R5: the greatest motor current.
     MotorCurrent {
         /// It, A.
@@ -162,6 +172,15 @@ pub enum Reason {
     StepsLate {
         /// How many in a row.
         steps: u32,
+    },
+    /// R12: no input that notices intruders is set up.
+    NoIntruderInput,
+    /// R12: kept.
+    NoIntruder,
+    /// R12: an input notices somebody whom nobody tracks.
+    Intruder {
+        /// Its name.
+        input: String,
     },
     /// R16: kept.
     ArenaAccountedFor,

@@ -28,7 +28,7 @@ export const help: HelpText = {
   kinds: {
     title: "Three kinds of stop",
     rows: [
-      ["Protective stop", "The column brakes and holds. It goes on by itself once the cause has been gone for 1 s (rules R2, R9, R10, R15)."],
+      ["Protective stop", "The column brakes and holds. It goes on by itself once the cause has been gone for 1 s (rules R2, R9, R10, R12, R15)."],
       ["Latched stop", "The column brakes, then the drive is released. It survives a restart. Only a reset with a reason leaves it, and a reset starts nothing: arming is a second act (R1, R4, R5, R6, R7)."],
       ["Faulted", "The machine or its link cannot be trusted to obey (R8). It is left like a latched stop; then home and arm again."],
     ],
@@ -115,6 +115,15 @@ export const help: HelpText = {
         "Ask the person to stand still.",
         "Start the VR program again or mend the network. It clears 1 s after the client is back.",
         "If the person has left the arena: look, then press the button that says so beside the name.",
+      ],
+    },
+    R12: {
+      title: "Intruder",
+      happened: "An input that notices people without a headset is active, or its line is cut or silent. The column brakes and holds, however long that lasts.",
+      steps: [
+        "Look who is in the arena without a headset, and lead them out.",
+        "If nobody is: look at the input named in the reason, its cable and its power.",
+        "It goes on by itself 1 s after the input is inactive again. Disarm first if that must not be.",
       ],
     },
     R15: {
@@ -215,10 +224,10 @@ export const help: HelpText = {
       clears: "There is nothing to clear.",
     },
     R12: {
-      watches: "Meant to be: a light curtain, a mat or a camera that notices people without a headset.",
-      happens: "Nothing in this version.",
-      you: "Keep everybody without a headset out of the arena, or draw a keep-out shape where they stand.",
-      clears: "There is nothing to clear.",
+      watches: "The inputs that notice people without a headset: a light curtain, a mat, a camera. One that is silent or cut counts as active.",
+      happens: "Protective stop. With no such input set up nothing is watched.",
+      you: "Look who came in and lead them out. Where there is no such input, keep everybody without a headset out of the arena.",
+      clears: "By itself, 1 s after the input is inactive again.",
     },
     R13: {
       watches: "The keep-out shapes of the scene: furniture, places of bystanders. The column keeps 0.35 m and its way to brake from each.",

@@ -28,7 +28,7 @@ export const help: HelpText = {
   kinds: {
     title: "Trois sortes d’arrêt",
     rows: [
-      ["Arrêt de protection", "La colonne freine et se maintient. Elle repart d’elle-même quand la cause a disparu depuis 1 s (règles R2, R9, R10, R15)."],
+      ["Arrêt de protection", "La colonne freine et se maintient. Elle repart d’elle-même quand la cause a disparu depuis 1 s (règles R2, R9, R10, R12, R15)."],
       ["Arrêt verrouillé", "La colonne freine, puis les moteurs sont libérés. Il survit à un redémarrage. Seule une réinitialisation motivée permet d’en sortir, et elle ne met rien en marche : armer est un second geste (R1, R4, R5, R6, R7)."],
       ["En défaut", "On ne peut plus se fier à l’obéissance de la machine ou de sa liaison (R8). On en sort comme d’un arrêt verrouillé ; ensuite, origine puis armement."],
     ],
@@ -115,6 +115,15 @@ export const help: HelpText = {
         "Demandez à la personne de ne plus bouger.",
         "Relancez le programme VR ou réparez le réseau. L’arrêt se lève 1 s après le retour du client.",
         "Si la personne a quitté l’arène : vérifiez de vos yeux, puis appuyez sur le bouton correspondant à côté de son nom.",
+      ],
+    },
+    R12: {
+      title: "Intrus",
+      happened: "Une entrée qui remarque les personnes sans casque est active, ou sa ligne est coupée ou muette. La colonne freine et se maintient, aussi longtemps que cela dure.",
+      steps: [
+        "Voyez qui est dans l’arène sans casque, et raccompagnez-le.",
+        "S’il n’y a personne : vérifiez l’entrée nommée dans le motif, son câble et son alimentation.",
+        "La colonne repart d’elle-même 1 s après que l’entrée est redevenue inactive. Désarmez d’abord si cela ne doit pas arriver.",
       ],
     },
     R15: {
@@ -215,10 +224,10 @@ export const help: HelpText = {
       clears: "Il n’y a rien à lever.",
     },
     R12: {
-      watches: "Prévu : une barrière lumineuse, un tapis ou une caméra qui remarque les personnes sans casque.",
-      happens: "Rien dans cette version.",
-      you: "Tenez hors de l’arène toute personne sans casque, ou dessinez une zone interdite là où elle se tient.",
-      clears: "Il n’y a rien à lever.",
+      watches: "Les entrées qui remarquent les personnes sans casque : barrière lumineuse, tapis, caméra. Une entrée muette ou coupée compte comme active.",
+      happens: "Arrêt de protection. Sans une telle entrée, rien n’est surveillé.",
+      you: "Voyez qui est entré et raccompagnez-le. Sans une telle entrée, tenez hors de l’arène toute personne sans casque.",
+      clears: "D’elle-même, 1 s après que l’entrée est redevenue inactive.",
     },
     R13: {
       watches: "Les zones interdites de la scène : meubles, places de spectateurs. La colonne garde 0,35 m, plus sa distance de freinage, avec chacune.",

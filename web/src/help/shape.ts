@@ -6,12 +6,12 @@ export const RULES = ["R1", "R2", "R3", "R4", "R5", "R6", "R7", "R8", "R9", "R10
 export type RuleName = (typeof RULES)[number];
 
 /** Every stop: each rule's own, and those that have a cause beside the rules. */
-export const STOPS = ["R4", "R1", "R2", "R5", "R6", "R7", "R8", "R9", "R10", "R15", "homing", "restart"] as const;
+export const STOPS = ["R4", "R1", "R2", "R5", "R6", "R7", "R8", "R9", "R10", "R12", "R15", "homing", "restart"] as const;
 /** A stop by the rule that demands it, or by its own name. */
 export type StopName = (typeof STOPS)[number];
 
 /** Rules that this version shows and does not watch yet. */
-export const UNWATCHED: ReadonlySet<RuleName> = new Set(["R11", "R12", "R14"]);
+export const UNWATCHED: ReadonlySet<RuleName> = new Set(["R11", "R14"]);
 
 /** What the help says of a rule. */
 export interface RuleHelp {

@@ -15,7 +15,7 @@ use toml::Value;
 
 pub use links::out_of_order;
 
-use super::{Config, LogFormat, MachineKind};
+use super::{Config, Input, LogFormat, MachineKind, inputs};
 
 /// One key.
 #[derive(Clone)]
@@ -41,6 +41,7 @@ enum Place {
     PathOrNone(fn(&mut Config) -> &mut Option<PathBuf>),
     Address(fn(&mut Config) -> &mut SocketAddr),
     Origins(fn(&mut Config) -> &mut Vec<String>),
+    Inputs(fn(&mut Config) -> &mut Vec<Input>),
     Rectangle(fn(&mut Config) -> &mut [f64; 4]),
     Point(fn(&mut Config) -> &mut [f64; 3]),
     Rule(fn(&mut Config) -> &mut RuleName),
@@ -181,6 +182,12 @@ pub fn all() -> Vec<Key> {
             jerk(|c| &mut c.machine.y.jerk_mps3),
         ),
         Key::new(
+            "safety.inputs",
+            "Digital inputs: of kind \"stop\" (latched, R4) or \"intruder\" (protective stop, R12), from a serial port, a pseudo-terminal or a FIFO with a line \
+             \"0\" or \"1\" at least every heartbeat_timeout_secs, or from a GPIO's value file. Silent, cut or garbled counts as active.",
+            Place::Inputs(|c| &mut c.safety.inputs),
+        ),
+        Key::new(
             "people.intention_rule",
             "The intention rule, by name.",
             Place::Rule(|c| &mut c.people.intention_rule),
@@ -292,6 +299,7 @@ impl Key {
             Place::PathOrNone(_) => Accepts::PathOrNone,
             Place::Address(_) => Accepts::Address,
             Place::Origins(_) => Accepts::Origins,
+            Place::Inputs(_) => Accepts::Inputs,
             Place::Rectangle(_) => Accepts::Rectangle,
             Place::Point(_) => Accepts::Point,
             Place::Rule(_) => one_of(RuleName::ALL.map(RuleName::name)),
@@ -328,6 +336,7 @@ impl Key {
             Place::Origins(place) => {
                 Value::Array(place(&mut config).iter().cloned().map(Value::String).collect())
             }
+            Place::Inputs(place) => inputs::value(place(&mut config)),
             Place::Rectangle(place) => {
                 Value::Array(place(&mut config).iter().map(|v| Value::Float(*v)).collect())
             }
@@ -372,6 +381,7 @@ impl Key {
             Place::Origins(place) => {
                 *place(config) = value.as_array()?.iter().map(origin).collect::<Option<_>>()?;
             }
+            Place::Inputs(place) => *place(config) = inputs::parse(value)?,
             Place::Rectangle(place) => {
                 let corners = lengths::<4>(value)?;
                 let [min_x, min_y, max_x, max_y] = corners;

@@ -20,6 +20,7 @@ use tokio::sync::mpsc;
 
 use super::{Control, Ended, NotDelivered, Setup, StopLaneName};
 use crate::clock::Clock;
+use crate::inputs::InputLines;
 
 /// What the machine is to do at its next reading.
 enum Whim {
@@ -109,6 +110,7 @@ fn start() -> Stage {
     let control = Control::start(Setup {
         engine: Engine::new(config, Arc::new(scene)),
         gantry: Box::new(puppet),
+        inputs: InputLines::default(),
         clock: Clock::started_now(),
         period,
         publish_every: Duration::from_millis(33),

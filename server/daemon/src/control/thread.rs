@@ -22,6 +22,7 @@ use super::lateness::Lateness;
 use super::stop_lane::{StopLane, StopLaneName};
 use super::{Control, Ended, EngineEvent, Published, Setup, real_time};
 use crate::clock::Clock;
+use crate::inputs::InputLines;
 use crate::meters;
 use crate::recorder::Record;
 
@@ -63,6 +64,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
     let mut run = Run {
         engine,
         drive,
+        inputs: setup.inputs,
         clock: setup.clock,
         period: setup.period,
         publish_every: setup.publish_every,
@@ -100,6 +102,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
 struct Run {
     engine: Engine,
     drive: Drive,
+    inputs: InputLines,
     clock: Clock,
     period: Duration,
     publish_every: Duration,
@@ -157,6 +160,7 @@ impl Run {
     fn tick(&mut self) {
         let now = self.clock.now();
         self.drive.read(&mut self.engine, now);
+        self.engine.observe(now, Observation::Inputs(self.inputs.look(now)));
         self.inbox.tell(&mut self.engine, now);
         let mut answers = Vec::new();
         self.inbox.ask(&mut self.engine, now, &mut answers);

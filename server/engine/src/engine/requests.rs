@@ -94,7 +94,10 @@ impl Engine {
         Conditions {
             homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
             moves: self.report.is_some() && !self.rests(now),
-            cause_still_there: self.supervisor.cause_still_there(),
+            cause_still_there: self
+                .stop_input()
+                .map(|reason| Reason::CauseStillThere { rule: RuleId(4), because: Box::new(reason) })
+                .or_else(|| self.supervisor.cause_still_there()),
         }
     }
 

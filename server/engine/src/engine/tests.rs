@@ -1,6 +1,7 @@
 //! The engine as a whole, on virtual time, in front of a machine that does exactly what it is told.
 
 mod foretold;
+mod inputs;
 mod modes;
 mod shown;
 

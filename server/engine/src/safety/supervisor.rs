@@ -2,12 +2,13 @@
 //!
 //! ```text
 //!   rule kept ──breach──▶ breached ──kept again──▶ kept        each change is an event
-//!   demand: none < protective stop (R2 R9 R10 R15) < latched stop (R1 R5 R6 R7) < fault (R8, homing failed)
+//!   demand: none < protective stop (R2 R9 R10 R12 R15) < latched stop (R1 R5 R6 R7) < fault (R8, homing failed)
 //! ```
 
 use crate::event::EventKind;
 use crate::frames::Floor;
 use crate::machine::{Homing, MachineReport, Travel};
+use crate::observation::InputLevel;
 use crate::person::{Lost, Person};
 use crate::reason::Reason;
 use crate::safety::parameters::Parameters;
@@ -31,6 +32,8 @@ pub struct Watched<'a> {
     pub homes: bool,
     /// Everybody in the arena.
     pub persons: &'a [Person],
+    /// What the inputs that notice intruders say.
+    pub intruder: &'a InputLevel,
     /// Somebody who looked said that nobody is in the arena.
     pub arena_confirmed_clear: bool,
     /// The machine's travel.
@@ -82,7 +85,8 @@ impl Supervisor {
             status: if n == 4 { RuleStatus::Clear } else { RuleStatus::Idle },
             reason: match n {
                 4 => Reason::StopNotPressed,
-                11 | 12 | 14 => Reason::NotWatched,
+                11 | 14 => Reason::NotWatched,
+                12 => Reason::NoIntruderInput,
                 _ => Reason::NothingToWatch,
             },
             since: Time::ZERO,
@@ -108,6 +112,13 @@ impl Supervisor {
     pub fn watch(&mut self, watched: &Watched<'_>, events: &mut Vec<EventKind>) -> Option<Demand> {
         self.watch_machine(watched, events);
         self.watch_people(watched, events);
+        let (status, reason) = match watched.intruder {
+            InputLevel::Absent => (RuleStatus::Idle, Reason::NoIntruderInput),
+            InputLevel::Inactive => (RuleStatus::Clear, Reason::NoIntruder),
+            InputLevel::Active(input) => (RuleStatus::Breached, Reason::Intruder(input.clone())),
+            InputLevel::Silent(input) => (RuleStatus::Breached, Reason::InputSilent(input.clone())),
+        };
+        self.set(RuleId(12), status, watched.now, events, || reason);
         let missed = self.missed_in_a_row;
         let late = missed >= self.parameters.missed_deadlines;
         self.set(RuleId(9), breach_if(late), watched.now, events, || {
@@ -344,7 +355,7 @@ impl Held {
 /// What a breach of the rule demands; none for rules that only shape the motion.
 pub fn demand(rule: RuleId) -> Option<Demand> {
     match rule.0 {
-        2 | 9 | 10 | 15 => Some(Demand::ProtectiveStop(rule)),
+        2 | 9 | 10 | 12 | 15 => Some(Demand::ProtectiveStop(rule)),
         1 | 4 | 5 | 6 | 7 => Some(Demand::LatchedStop(rule)),
         8 => Some(Demand::Fault(rule)),
         _ => None,

@@ -44,6 +44,8 @@ impl Reason {
                 Self::SoftwareStop { said: Some(said.clone()).filter(|said| !said.is_empty()) }
             }
             Engine::LastRunLatched(record) => latched::last_run(record),
+            Engine::StopInput(input) => Self::StopInput { input: input.to_string() },
+            Engine::InputSilent(input) => Self::InputSilent { input: input.to_string() },
             Engine::MotorCurrent { amps, limit_amps } => {
                 Self::MotorCurrent { amps: *amps, limit_amps: *limit_amps }
             }
@@ -60,6 +62,9 @@ impl Reason {
             Engine::ControllerAnswers => Self::ControllerAnswers,
             Engine::StepsInTime => Self::StepsInTime,
             Engine::StepsLate(steps) => Self::StepsLate { steps: *steps },
+            Engine::NoIntruderInput => Self::NoIntruderInput,
+            Engine::NoIntruder => Self::NoIntruder,
+            Engine::Intruder(input) => Self::Intruder { input: input.to_string() },
             Engine::ArenaAccountedFor => Self::ArenaAccountedFor,
             Engine::ArenaUnconfirmed => Self::ArenaUnconfirmed,
             Engine::Asked(kind) => Self::Asked { request: request_name(*kind).into() },

@@ -53,6 +53,10 @@ impl fmt::Display for Reason {
                 write!(f, "the last run ended in a latched stop: {rule}")
             }
             Self::LastRunLatched { .. } => write!(f, "the last run ended in a latched stop"),
+            Self::StopInput { input } => write!(f, "the stop input {input} is active"),
+            Self::InputSilent { input } => {
+                write!(f, "the input {input} is silent or garbled, which counts as active")
+            }
             Self::MotorCurrent { amps, limit_amps } => {
                 write!(f, "{amps:.1} A against a limit of {limit_amps:.1} A")
             }
@@ -73,6 +77,11 @@ impl fmt::Display for Reason {
             Self::ControllerAnswers => write!(f, "the controller answers"),
             Self::StepsInTime => write!(f, "control steps begin in time"),
             Self::StepsLate { steps } => write!(f, "{steps} control steps in a row began late"),
+            Self::NoIntruderInput => write!(f, "no intruder input is set up"),
+            Self::NoIntruder => write!(f, "no intruder"),
+            Self::Intruder { input } => {
+                write!(f, "the input {input} notices somebody whom nobody tracks")
+            }
             Self::ArenaAccountedFor => write!(f, "people are tracked, or the arena was confirmed clear"),
             Self::ArenaUnconfirmed => write!(
                 f,

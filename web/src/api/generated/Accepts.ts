@@ -19,7 +19,7 @@ least: number,
 /**
  * The greatest.
  */
-most: number, } | { "kind": "true_or_false" } | { "kind": "text" } | { "kind": "path" } | { "kind": "path_or_none" } | { "kind": "address" } | { "kind": "origins" } | { "kind": "rectangle" } | { "kind": "point" } | { "kind": "one_of", 
+most: number, } | { "kind": "true_or_false" } | { "kind": "text" } | { "kind": "path" } | { "kind": "path_or_none" } | { "kind": "address" } | { "kind": "origins" } | { "kind": "inputs" } | { "kind": "rectangle" } | { "kind": "point" } | { "kind": "one_of", 
 /**
  * The names.
  */

@@ -80,7 +80,15 @@ rule: string | null,
 /**
  * Why, where the record tells.
  */
-because: Reason | null, } | { "id": "motor_current", 
+because: Reason | null, } | { "id": "stop_input", 
+/**
+ * Its name.
+ */
+input: string, } | { "id": "input_silent", 
+/**
+ * Its name.
+ */
+input: string, } | { "id": "motor_current", 
 /**
  * It, A.
  */
@@ -108,7 +116,11 @@ silent_millis: number, } | { "id": "controller_answers" } | { "id": "steps_in_ti
 /**
  * How many in a row.
  */
-steps: number, } | { "id": "arena_accounted_for" } | { "id": "arena_unconfirmed" } | { "id": "asked", 
+steps: number, } | { "id": "no_intruder_input" } | { "id": "no_intruder" } | { "id": "intruder", 
+/**
+ * Its name.
+ */
+input: string, } | { "id": "arena_accounted_for" } | { "id": "arena_unconfirmed" } | { "id": "asked", 
 /**
  * `home`, `arm`, `disarm`, `stop` or `reset`.
  */

@@ -27,6 +27,8 @@ export const reasons: ReasonSentences = {
   software_stop: ({ said }) => (said === null ? "software stop, no reason given" : `software stop: ${said}`),
   last_run_latched: ({ rule, because }, { reason }) =>
     ["the last run ended in a latched stop", rule, because === null ? null : reason(because)].filter((part) => part !== null).join(": "),
+  stop_input: ({ input }) => `the stop input ${input} is active`,
+  input_silent: ({ input }) => `the input ${input} is silent or garbled, which counts as active`,
   motor_current: ({ amps, limit_amps }, { number }) => `${number(amps, 1)} A against a limit of ${number(limit_amps, 1)} A`,
   behind_command: ({ behind_m }, { number }) => `${number(behind_m * 100, 1)} cm behind the command`,
   astray: () => "not where it was commanded to be: held until it rests",
@@ -41,6 +43,9 @@ export const reasons: ReasonSentences = {
   controller_answers: () => "the controller answers",
   steps_in_time: () => "control steps begin in time",
   steps_late: ({ steps }) => `${steps} control steps in a row began late`,
+  no_intruder_input: () => "no intruder input is set up",
+  no_intruder: () => "no intruder",
+  intruder: ({ input }) => `the input ${input} notices somebody whom nobody tracks`,
   arena_accounted_for: () => "people are tracked, or the arena was confirmed clear",
   arena_unconfirmed: () => "nobody is tracked and nobody has confirmed that the arena is clear: no motion by itself",
   asked: ({ request }, say) => say.request(request),

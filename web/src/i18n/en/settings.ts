@@ -55,6 +55,7 @@ export const settings = {
     path_or_none: "a path, or \"\" for none",
     address: "an address and a port such as \"127.0.0.1:7878\"",
     origins: "a list of texts such as \"https://lab.example:8443\", \"file://\" or \"null\"",
+    inputs: "a list of inputs such as {name = \"curtain\", kind = \"intruder\", source = \"/dev/ttyUSB0\"}, each of another name; kind \"stop\" or \"intruder\"; active \"low\" (usual) or \"high\"; heartbeat_timeout_secs from 0.05 to 10 (usual 0.5)",
     rectangle: "four numbers [min_x, min_y, max_x, max_y], each side at least 0.5 m",
     point: "three numbers [x, y, z] of at most 100 m",
     oneOf: (names: string, count: number) => (count === 1 ? names : `one of ${names}`),

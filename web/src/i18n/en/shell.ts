@@ -75,6 +75,7 @@ export const shell = {
       R8: "reset, with a reason, once the controller answers again; then home and arm",
       R9: "clears by itself 1 s after the control loop keeps its deadlines again",
       R10: "clears 1 s after the VR client is back, or after somebody confirms that the person has left the arena",
+      R12: "clears 1 s after the input is inactive again: see who came in, and that they are out",
       R15: "clears 1 s after the game master confirms the person on the floor mark",
     },
     whatToDo: "What to do, step by step",

@@ -27,6 +27,7 @@ export const config: Readonly<Record<string, string>> = {
   "machine.y.acceleration_mps2": "Plus grande accélération le long du rail transversal, m/s2.",
   "machine.y.braking_mps2": "Plus grande décélération le long du rail transversal, d’après l’essai de freinage, m/s2.",
   "machine.y.jerk_mps3": "Plus grand à-coup le long du rail transversal, m/s3.",
+  "safety.inputs": "Entrées numériques : de genre « stop » (verrouillé, R4) ou « intruder » (arrêt de protection, R12), depuis un port série, un pseudo-terminal ou un FIFO avec une ligne « 0 » ou « 1 » au moins toutes les heartbeat_timeout_secs, ou depuis le fichier de valeur d’un GPIO. Muette, coupée ou illisible compte comme active.",
   "people.intention_rule": "La règle d’intention, par son nom.",
   "people.intention_parameters": "Un fichier de paramètres pour la règle d’intention, tel que l’écrit covr fit ; vide pour ceux par défaut.",
   "people.standing": "Où se tient la colonne tant qu’on ne sait pas ce qui sera touché : la moyenne pondérée, ou là où elle sera le plus probablement à temps. « rule » : selon la règle d’intention.",

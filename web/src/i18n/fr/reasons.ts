@@ -27,6 +27,8 @@ export const reasons: ReasonSentences = {
   software_stop: ({ said }) => (said === null ? "arrêt logiciel, sans motif donné" : `arrêt logiciel : ${said}`),
   last_run_latched: ({ rule, because }, { reason }) =>
     ["la dernière exécution a fini par un arrêt verrouillé", rule, because === null ? null : reason(because)].filter((part) => part !== null).join(" : "),
+  stop_input: ({ input }) => `l’entrée d’arrêt ${input} est active`,
+  input_silent: ({ input }) => `l’entrée ${input} est muette ou illisible, ce qui compte comme active`,
   motor_current: ({ amps, limit_amps }, { number }) => `${number(amps, 1)} A pour une limite de ${number(limit_amps, 1)} A`,
   behind_command: ({ behind_m }, { number }) => `${number(behind_m * 100, 1)} cm de retard sur la commande`,
   astray: () => "pas là où elle était commandée : retenue jusqu’au repos",
@@ -41,6 +43,9 @@ export const reasons: ReasonSentences = {
   controller_answers: () => "le contrôleur répond",
   steps_in_time: () => "les pas de commande commencent à l’heure",
   steps_late: ({ steps }) => `${steps} pas de commande de suite ont commencé en retard`,
+  no_intruder_input: () => "aucune entrée de détection d’intrus n’est configurée",
+  no_intruder: () => "pas d’intrus",
+  intruder: ({ input }) => `l’entrée ${input} signale quelqu’un que personne ne suit`,
   arena_accounted_for: () => "les personnes sont suivies, ou l’arène a été confirmée vide",
   arena_unconfirmed: () => "personne n’est suivi et personne n’a confirmé que l’arène est vide : aucun mouvement spontané",
   asked: ({ request }, say) => say.request(request),

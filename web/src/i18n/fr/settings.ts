@@ -55,6 +55,7 @@ export const settings = {
     path_or_none: "un chemin, ou \"\" pour aucun",
     address: "une adresse et un port, comme \"127.0.0.1:7878\"",
     origins: "une liste de textes, comme \"https://lab.example:8443\", \"file://\" ou \"null\"",
+    inputs: "une liste d’entrées comme {name = \"curtain\", kind = \"intruder\", source = \"/dev/ttyUSB0\"}, chacune d’un autre nom ; kind \"stop\" ou \"intruder\" ; active \"low\" (habituel) ou \"high\" ; heartbeat_timeout_secs de 0,05 à 10 (habituel 0,5)",
     rectangle: "quatre nombres [min_x, min_y, max_x, max_y], chaque côté d’au moins 0,5 m",
     point: "trois nombres [x, y, z] d’au plus 100 m",
     oneOf: (names: string, count: number) => (count === 1 ? names : `l’un de ${names}`),

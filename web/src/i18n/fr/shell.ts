@@ -75,6 +75,7 @@ export const shell = {
       R8: "réinitialiser, avec un motif, quand le contrôleur répond de nouveau ; puis prendre l’origine et armer",
       R9: "se lève tout seul 1 s après que la boucle de commande tient de nouveau ses échéances",
       R10: "se lève 1 s après le retour du client VR, ou quand quelqu’un confirme que la personne a quitté l’arène",
+      R12: "se lève 1 s après que l’entrée est redevenue inactive : voyez qui est entré, et qu’il est ressorti",
       R15: "se lève 1 s après que le maître du jeu a confirmé la personne sur la marque au sol",
     },
     whatToDo: "Que faire, pas à pas",

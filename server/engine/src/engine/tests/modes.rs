@@ -119,7 +119,7 @@ fn every_cause_of_a_protective_stop_leads_to_one() {
         let pose = Pose { position: Point::new(x, 3.0, 1.6), orientation: UnitQuaternion::identity() };
         Observation::Pose(VISITOR, PoseSample { taken_at: room.now, pose, tracked, worn })
     };
-    let causes: [Cause; 8] = [
+    let causes: [Cause; 9] = [
         (2, "no pose yet", |room| room.engine.observe(room.now, Observation::PersonEntered(PersonId(2)))),
         (2, "too old", |room| room.head = None),
         (2, "untracked", |_| {}),
@@ -128,6 +128,11 @@ fn every_cause_of_a_protective_stop_leads_to_one() {
             (0..3).for_each(|_| room.engine.observe(room.now, Observation::DeadlineMissed));
         }),
         (10, "client gone", |room| room.engine.observe(room.now, Observation::ClientGone(VISITOR))),
+        (12, "intruder", |room| {
+            let intruder = crate::observation::InputLevel::Active("curtain".into());
+            let inputs = crate::observation::Inputs { intruder, ..Default::default() };
+            room.engine.observe(room.now, Observation::Inputs(inputs));
+        }),
         (15, "headset off", |_| {}),
         (15, "origin changed", |room| room.engine.observe(room.now, Observation::OriginChanged(VISITOR))),
     ];
