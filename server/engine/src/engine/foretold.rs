@@ -15,8 +15,8 @@ pub struct Foretold {
     pub arrival_secs: f64,
     /// When the visitor's hand could be at it, s from now; none without a visitor.
     pub touch_secs: Option<f64>,
-    /// The shift of the virtual object, room frame, m, by which it is where its prop will be when the hand comes, within what
-    /// nobody notices; none where the column makes for something else, and where no shift is needed or would serve.
+    /// The shift of the virtual object, room frame, m, by which it is where its prop will be when the hand comes, within the
+    /// published detection threshold; none where the column makes for something else, and where no shift is needed or would serve.
     pub offset: Option<Planar>,
     /// The column comes only while the engine follows.
     follows: bool,

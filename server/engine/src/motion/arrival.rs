@@ -25,8 +25,8 @@ pub fn at_touch(here: Floor, rests_at: Floor, late_by_secs: f64, limits: &Limits
     if way.norm() <= short_m { here } else { way.unit().map_or(rests_at, |back| rests_at + back * short_m) }
 }
 
-/// The shift of a virtual object, m, that brings it to a prop which is so far off its place, clipped to what nobody
-/// notices; none where none is needed, and where the prop is too far off to serve even so (`serves_within_m`).
+/// The shift of a virtual object, m, that brings it to a prop which is so far off its place, clipped to the
+/// published detection threshold; none where none is needed, and where the prop is too far off to serve even so (`serves_within_m`).
 pub fn redirection(off: Planar, serves_within_m: f64) -> Option<Planar> {
     let off_m = off.norm();
     (NEEDED_M..=serves_within_m).contains(&off_m).then(|| off * (UNNOTICED_M / off_m).min(1.0))
@@ -34,7 +34,7 @@ pub fn redirection(off: Planar, serves_within_m: f64) -> Option<Planar> {
 
 /// Less is within what the machine and the tracking get wrong, m.
 const NEEDED_M: f64 = 0.01;
-/// A virtual hand is led aside from the real one by up to this without being noticed, m: Zenner and Krueger, Estimating
+/// A virtual hand is led aside from the real one by up to this below the detection threshold, m: Zenner and Krueger, Estimating
 /// Detection Thresholds for Desktop-Scale Hand Redirection in Virtual Reality (IEEE VR 2019): 4.5 degrees across and gains of
 /// 0.88 to 1.07 along reaches of 0.4 m, so 3.1 cm across, and along 5.5 cm farther or 2.5 cm (6.18 %) less far. The least of
 /// them, for every direction; they found it with a hand that is looked at, the strictest case.
@@ -70,7 +70,7 @@ mod tests {
         }
 
         #[test]
-        fn an_offset_points_at_the_prop_and_nobody_notices_it(x in -0.2..0.2f64, y in -0.2..0.2f64) {
+        fn an_offset_points_at_the_prop_and_keeps_to_the_threshold(x in -0.2..0.2f64, y in -0.2..0.2f64) {
             let off = Planar::new(x, y);
             if let Some(offset) = redirection(off, 0.1) {
                 prop_assert!(offset.norm() <= UNNOTICED_M + 1e-12 && offset.norm() <= off.norm() + 1e-12);

@@ -137,7 +137,7 @@ pub struct Prediction {
     /// not following and it is not; null where no hand is foreseen.
     pub in_time_probability: Option<f64>,
     /// Shift the virtual object by this, along the client's axes but in metres whatever its unit, and it is where its prop
-    /// will be when the hand comes. No longer than 2.5 cm, which nobody notices (Zenner and Krueger 2019); null where no
+    /// will be when the hand comes. At most 2.5 cm, the published detection threshold (Zenner and Krueger 2019); null where no
     /// shift is needed, and where the prop is more than 10 cm off.
     pub offset_m: Option<[f64; 3]>,
 }
