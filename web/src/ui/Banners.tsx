@@ -13,7 +13,8 @@ export function Banners(props: { readonly live: Live }): JSX.Element {
     const freshness = props.live.freshness();
     return freshness.kind === "stale" ? freshness.ageMillis : null;
   });
-  const waiting = createMemo(() => props.live.freshness().kind === "none");
+  // Whoever is asked for a token is told so by the form.
+  const waiting = createMemo(() => props.live.freshness().kind === "none" && !props.live.identity.mustSignIn());
   const stopped = createMemo(() => props.live.snapshot()?.stop ?? null);
 
   return (

@@ -22,7 +22,7 @@ pub fn decision(state: &Snapshot, names: &BTreeMap<PersonId, String>) -> Option<
         belief: belief(state, &likely, &name_of(visitor, names)),
         place: vec![place(target, &likely, state.standing)],
         route: super::column::route(column, names),
-        arrival: vec![arrival(state)],
+        arrival: arrival(state).into_iter().collect(),
     })
 }
 
@@ -60,13 +60,15 @@ fn place(target: Floor, likely: &[&ObjectState], standing: &str) -> Reason {
     }
 }
 
-fn arrival(state: &Snapshot) -> Reason {
+/// None while it is there: that needs no reason.
+fn arrival(state: &Snapshot) -> Option<Reason> {
     match (state.column.arrival_secs, state.column.least_arrival_secs) {
+        (Some(0.0), _) => None,
         (Some(secs), Some(least)) if secs - least > WORTH_SAYING_SECS => {
-            Reason::PeopleCost { secs: secs - least }
+            Some(Reason::PeopleCost { secs: secs - least })
         }
-        (Some(_), _) => Reason::AtItsLimits,
-        (None, _) => Reason::NotForeseen,
+        (Some(_), _) => Some(Reason::AtItsLimits),
+        (None, _) => Some(Reason::NotForeseen),
     }
 }
 
@@ -106,6 +108,12 @@ mod tests {
         assert_eq!(place, "at kettle: from there more can be reached in time");
         assert_eq!(route, "straight, nobody in the way");
         assert_eq!(arrival, "people on the way and a soft start cost 0.4 s");
+    }
+
+    #[test]
+    fn a_column_that_is_there_gives_no_reason_for_its_arrival() {
+        let [.., arrival] = decided(|state| state.column.arrival_secs = Some(0.0)).unwrap();
+        assert_eq!(arrival, "");
     }
 
     #[test]
