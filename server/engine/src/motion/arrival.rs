@@ -21,15 +21,13 @@ pub fn at_touch(here: Floor, rests_at: Floor, late_by_secs: f64, limits: &Limits
     let braking_mps2 = limits.x.braking_mps2.min(limits.y.braking_mps2);
     let late_secs = late_by_secs.max(0.0);
     let short_m = 0.5 * braking_mps2 * late_secs * late_secs;
-    let way = here - rests_at;
-    if way.norm() <= short_m { here } else { way.unit().map_or(rests_at, |back| rests_at + back * short_m) }
+    rests_at + (here - rests_at).capped(short_m)
 }
 
 /// The shift of a virtual object, m, that brings it to a prop which is so far off its place, clipped to the
 /// published detection threshold; none where none is needed, and where the prop is too far off to serve even so (`serves_within_m`).
 pub fn redirection(off: Planar, serves_within_m: f64) -> Option<Planar> {
-    let off_m = off.norm();
-    (NEEDED_M..=serves_within_m).contains(&off_m).then(|| off * (UNNOTICED_M / off_m).min(1.0))
+    (NEEDED_M..=serves_within_m).contains(&off.norm()).then(|| off.capped(UNNOTICED_M))
 }
 
 /// Less is within what the machine and the tracking get wrong, m.

@@ -2,6 +2,7 @@
 
 use super::{Following, Wish};
 use crate::frames::{Floor, Planar};
+use crate::machine::Travel;
 use crate::motion::MotionName;
 use crate::motion::foresight::Foresight;
 use crate::motion::planner::Errand;
@@ -10,6 +11,18 @@ use crate::safety::governor::Governor;
 use crate::safety::path::State;
 use crate::safety::separation::{Conflict, Separation};
 use crate::time::Span;
+
+/// From where the column is to where it is wanted.
+#[derive(Clone, Copy)]
+struct Way {
+    here: Floor,
+    /// Inside the travel.
+    target: Floor,
+    /// The travel less its margin.
+    inside: Travel,
+    /// The soft start's.
+    speed_cap_mps: f64,
+}
 
 impl Following {
     /// Move the commanded state on by one period.
@@ -22,9 +35,32 @@ impl Following {
         since: Span,
         period: Span,
     ) {
-        self.pursue(governor, wish, measured, separation, since, period);
         let ago = |(conflict, ago): (Conflict, Span)| (conflict, ago + period);
         let before = self.last_conflict.map(ago).filter(|(_, ago)| *ago <= HELD_FOR);
+        let here = governor.commanded().position();
+        let inside = separation.travel.shrunk(separation.parameters.travel_margin_m);
+        let target = inside.clamped(wish.map_or(here, |w| w.target));
+        let settled =
+            here.distance_m(target) < SETTLED_M && governor.commanded().velocity().norm() < SETTLED_MPS;
+        let way =
+            Way { here, target, inside, speed_cap_mps: SOFT_START_MPS + SOFT_START_MPS2 * since.secs() };
+        let stays = settled || wish.is_none();
+        let rolls = !stays && self.motion == MotionName::Proxy;
+        self.goes_around = false;
+        self.conflict = if stays {
+            // Nothing is wanted, but somebody may be coming: the measured state is still looked at.
+            let choice = governor.govern(&[Planar::ZERO], measured, separation, period);
+            choice.conflict.filter(|_| choice.taken.is_none() && !settled)
+        } else if rolls {
+            self.roll(&way, separation, period);
+            governor.govern(self.proposals.velocities(), measured, separation, period).conflict
+        } else {
+            self.plan(governor, wish.and_then(|w| w.touch_secs), &way, separation, period);
+            governor.govern(self.planner.velocities(), measured, separation, period).conflict
+        };
+        if !rolls {
+            self.proxy = Proxy::at(governor.commanded().position());
+        }
         self.last_conflict = self.conflict.map(|conflict| (conflict, Span::ZERO)).or(before);
     }
 
@@ -35,56 +71,41 @@ impl Following {
         Some(if self.stops_short { nearly(here, target) } else { target })
     }
 
-    fn pursue(
+    /// Proposals of the planner.
+    fn plan(
         &mut self,
-        governor: &mut Governor,
-        wish: Option<Wish>,
-        measured: &State,
+        governor: &Governor,
+        touch_secs: Option<f64>,
+        way: &Way,
         separation: &Separation<'_>,
-        since: Span,
         period: Span,
     ) {
-        let here = governor.commanded().position();
-        let inside = separation.travel.shrunk(separation.parameters.travel_margin_m);
-        let target = inside.clamped(wish.map_or(here, |w| w.target));
-        let settled =
-            here.distance_m(target) < SETTLED_M && governor.commanded().velocity().norm() < SETTLED_MPS;
-        if settled || wish.is_none() {
-            // Nothing is wanted, but somebody may be coming: the measured state is still looked at.
-            let choice = governor.govern(&[Planar::ZERO], measured, separation, period);
-            self.conflict = choice.conflict.filter(|_| choice.taken.is_none() && !settled);
-            self.goes_around = false;
-            self.proxy = Proxy::at(governor.commanded().position());
-            return;
-        }
-        let soft_start_mps = SOFT_START_MPS + SOFT_START_MPS2 * since.secs();
-        if self.motion == MotionName::Planner {
-            let foresight = Foresight {
-                limits: separation.limits,
-                parameters: separation.parameters,
-                footprint: separation.scene.footprint(),
-                keep_outs: separation.scene.keep_outs(),
-                // With the separation rule left out there is nobody to be led around either.
-                walkers: if separation.threats.is_empty() { &[] } else { &self.walkers },
-            };
-            // A hand that meets a moving column is not served: rather than be late in the middle it stops short. Once it
-            // does, it makes for the middle again only with time to spare.
-            let spare_secs = wish.and_then(|w| w.touch_secs).map(|touch| touch - self.planner.arrival_secs());
-            let needs_secs = STILL_BEFORE_TOUCH_SECS + if self.stops_short { SPARE_SECS } else { 0.0 };
-            self.stops_short = spare_secs.is_some_and(|spare| spare <= needs_secs);
-            let errand = Errand {
-                target: if self.stops_short { nearly(here, target) } else { target },
-                speed_cap_mps: soft_start_mps,
-                inside,
-                elapsed_secs: period.secs(),
-            };
-            self.planner.plan(governor.commanded(), &errand, &foresight);
-            self.goes_around = self.planner.goes_around();
-            let choice = governor.govern(self.planner.velocities(), measured, separation, period);
-            self.conflict = choice.conflict;
-            self.proxy = Proxy::at(governor.commanded().position());
-            return;
-        }
+        let foresight = Foresight {
+            limits: separation.limits,
+            parameters: separation.parameters,
+            footprint: separation.scene.footprint(),
+            keep_outs: separation.scene.keep_outs(),
+            // With the separation rule left out there is nobody to be led around either.
+            walkers: if separation.threats.is_empty() { &[] } else { &self.walkers },
+        };
+        // A hand that meets a moving column is not served: rather than be late in the middle it stops short. Once it
+        // does, it makes for the middle again only with time to spare.
+        let spare_secs = touch_secs.map(|touch| touch - self.planner.arrival_secs());
+        let needs_secs = STILL_BEFORE_TOUCH_SECS + if self.stops_short { SPARE_SECS } else { 0.0 };
+        self.stops_short = spare_secs.is_some_and(|spare| spare <= needs_secs);
+        let errand = Errand {
+            target: if self.stops_short { nearly(way.here, way.target) } else { way.target },
+            speed_cap_mps: way.speed_cap_mps,
+            inside: way.inside,
+            elapsed_secs: period.secs(),
+        };
+        self.planner.plan(governor.commanded(), &errand, &foresight);
+        self.goes_around = self.planner.goes_around();
+    }
+
+    /// Proposals of the paper's ball.
+    fn roll(&mut self, way: &Way, separation: &Separation<'_>, period: Span) {
+        let Way { here, target, inside, speed_cap_mps } = *way;
         let clearances = &self.clearances_m;
         let ball = self.proxy.position();
         let heads = separation.threats.iter().zip(clearances).filter_map(|(threat, radius_m)| {
@@ -99,17 +120,15 @@ impl Following {
         });
         self.proxy.roll(target, here, heads.chain(rims), separation.limits, &inside, period.secs());
         let wanted = self.proxy.followed_from(here);
-        self.proposals.fill(wanted, soft_start_mps, here, target, separation.threats, &inside);
+        self.proposals.fill(wanted, speed_cap_mps, here, target, separation.threats, &inside);
         self.goes_around = self.proposals.goes_around();
-        let choice = governor.govern(self.proposals.velocities(), measured, separation, period);
-        self.conflict = choice.conflict;
     }
 }
 
 /// As near as still serves: where it is, or short of the target on the way there.
 fn nearly(here: Floor, target: Floor) -> Floor {
-    let way = here - target;
-    if way.norm() < NEARLY_M { here } else { way.unit().map_or(target, |back| target + back * SHORT_M) }
+    let back = here - target;
+    if back.norm() < NEARLY_M { here } else { target + back.capped(SHORT_M) }
 }
 
 /// A prop that a hand meets has stood still for so long, s.
