@@ -121,7 +121,9 @@ fn make_raw(port: &File) -> std::io::Result<()> {
     Ok(())
 }
 
+/// A source that is gone makes no event when it is back: it is tried so often, on this input's own thread.
 const REOPEN_EVERY: Duration = Duration::from_millis(50);
+/// A value file is polled: only some GPIO drivers tell of an edge, and a look that succeeds is the heartbeat.
 const LOOK_AT_VALUE_EVERY: Duration = Duration::from_millis(2);
 const LOOK_AT_QUIT_EVERY_MILLIS: u8 = 50;
 /// A longer one is no word.
