@@ -71,7 +71,7 @@ pub fn router(app: Arc<App>) -> Router {
         .layer(always(header::X_FRAME_OPTIONS, Some("DENY")))
         .layer(always(HeaderName::from_static("cross-origin-resource-policy"), Some("same-origin")))
         .layer(always(HeaderName::from_static("cross-origin-opener-policy"), Some("same-origin")))
-        .layer(always(header::STRICT_TRANSPORT_SECURITY, app.config.server.is_encrypted().then_some(A_YEAR)))
+        .layer(always(header::STRICT_TRANSPORT_SECURITY, app.config.server.is_encrypted().then_some(A_DAY)))
         .layer(from_fn(problem::finish))
         .layer(from_fn_with_state(app.clone(), guard::same_host))
         .layer(from_fn_with_state(app.clone(), limits::within_rate))
@@ -107,4 +107,7 @@ fn request_span(request: &axum::extract::Request) -> tracing::Span {
     tracing::debug_span!("http", method = %request.method(), path = request.uri().path(), id)
 }
 
-const A_YEAR: &str = "max-age=31536000";
+/// Of the one request that nothing may hold up.
+const STOP_PATH: &str = "/api/v1/stop";
+/// Browsers keep to TLS for so long: a lab that turns it off again, or whose certificate has ended, is not locked out for long.
+const A_DAY: &str = "max-age=86400";

@@ -11,12 +11,13 @@ use axum::http::{HeaderMap, Uri, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
+use super::STOP_PATH;
 use super::problem::Problem;
 use crate::app::App;
 
 /// Refuse what comes from another site.
 pub async fn same_host(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
-    if request.uri().path() == STOP {
+    if request.uri().path() == STOP_PATH {
         return next.run(request).await;
     }
     let loopback_only = app.config.server.bind.ip().is_loopback();
@@ -59,7 +60,6 @@ fn is_this_machine(host: &str) -> bool {
     name.eq_ignore_ascii_case("localhost") || address.parse::<IpAddr>().is_ok_and(|ip| ip.is_loopback())
 }
 
-const STOP: &str = "/api/v1/stop";
 const CLIENTS: &str = "/ws/v1/client";
 
 #[cfg(test)]

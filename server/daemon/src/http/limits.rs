@@ -13,6 +13,7 @@ use axum::response::{IntoResponse, Response};
 use governor::clock::{Clock, DefaultClock};
 use governor::{DefaultKeyedRateLimiter, Quota, RateLimiter};
 
+use super::STOP_PATH;
 use super::problem::Problem;
 use crate::app::App;
 
@@ -58,7 +59,7 @@ impl Limits {
 
 /// Refuse what is too much. Never the stop.
 pub async fn within_rate(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
-    if request.uri().path() != STOP
+    if request.uri().path() != STOP_PATH
         && let Err(too_much) = check(&app.limits.requests, peer(&request))
     {
         return too_much.into_response();
@@ -101,7 +102,6 @@ fn check(rates: &DefaultKeyedRateLimiter<IpAddr>, from: IpAddr) -> Result<(), To
         .map_err(|not_until| TooMuch { after: not_until.wait_time_from(DefaultClock::default().now()) })
 }
 
-const STOP: &str = "/api/v1/stop";
 /// Seconds' worth of requests at once: a page asks for all that it shows when it opens.
 const BURST: NonZeroU32 = NonZeroU32::new(5).expect("five is not zero");
 const TRIES_A_MINUTE: NonZeroU32 = NonZeroU32::new(10).expect("ten is not zero");

@@ -4,6 +4,7 @@
 use covr_wire::reason::Reason;
 use serde_json::{Map, Value, json};
 
+use super::super::STOP_PATH;
 use super::super::access::LOGIN_COOKIE;
 use super::super::problem::{PROBLEM_JSON, Problem};
 use super::samples;
@@ -172,7 +173,7 @@ impl Operation<'_> {
 
     /// What the layers and extractors answer.
     fn around(&self, operation: &Value) -> Vec<(&'static str, &'static str)> {
-        let is_stop = self.path == "/api/v1/stop";
+        let is_stop = self.path == STOP_PATH;
         let in_api = self.path.starts_with("/api/");
         let mut answers = Vec::new();
         if !is_stop {
