@@ -3,18 +3,17 @@
 use covr_wire::client::{ClientError, Encoding, ToClient, decode_from_server};
 use futures_util::{SinkExt, StreamExt};
 use serde_json::{Value, json};
-use tokio::net::TcpStream;
+use tokio_tungstenite::connect_async_with_config;
 use tokio_tungstenite::tungstenite::Message;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::protocol::CloseFrame;
-use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async_with_config};
 
-use crate::SOON;
+use crate::{SOON, Socket, close_frame};
 
 /// A connected client.
 pub struct VrClient {
     /// The raw socket.
-    pub socket: WebSocketStream<MaybeTlsStream<TcpStream>>,
+    pub socket: Socket,
     encoding: Encoding,
     sequence: u32,
     started: std::time::Instant,
@@ -104,15 +103,6 @@ impl VrClient {
 
     /// How the server closes the connection.
     pub async fn closed(&mut self) -> Option<CloseFrame> {
-        let closed = tokio::time::timeout(SOON, async {
-            loop {
-                match self.socket.next().await {
-                    Some(Ok(Message::Close(frame))) => return frame,
-                    Some(Ok(_)) => {}
-                    Some(Err(_)) | None => return None,
-                }
-            }
-        });
-        closed.await.expect("the connection is closed in time")
+        close_frame(&mut self.socket).await
     }
 }

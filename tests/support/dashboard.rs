@@ -2,18 +2,17 @@
 
 use covr_wire::dashboard::{FromDashboard, ToDashboard};
 use futures_util::{SinkExt, StreamExt};
-use tokio::net::TcpStream;
+use tokio_tungstenite::connect_async;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::protocol::CloseFrame;
 use tokio_tungstenite::tungstenite::{Error, Message};
-use tokio_tungstenite::{MaybeTlsStream, WebSocketStream, connect_async};
 
-use crate::SOON;
+use crate::{SOON, Socket, close_frame};
 
 /// A connected dashboard.
 pub struct Dashboard {
     /// The raw socket.
-    pub socket: WebSocketStream<MaybeTlsStream<TcpStream>>,
+    pub socket: Socket,
 }
 
 impl Dashboard {
@@ -81,15 +80,6 @@ impl Dashboard {
 
     /// How the server closes the connection.
     pub async fn closed(&mut self) -> Option<CloseFrame> {
-        let closed = tokio::time::timeout(SOON, async {
-            loop {
-                match self.socket.next().await {
-                    Some(Ok(Message::Close(frame))) => return frame,
-                    Some(Ok(_)) => {}
-                    Some(Err(_)) | None => return None,
-                }
-            }
-        });
-        closed.await.expect("the connection is closed in time")
+        close_frame(&mut self.socket).await
     }
 }

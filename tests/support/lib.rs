@@ -10,6 +10,15 @@ pub mod server;
 
 use std::time::Duration;
 
+use futures_util::StreamExt;
+use tokio::net::TcpStream;
+use tokio_tungstenite::tungstenite::Message;
+use tokio_tungstenite::tungstenite::protocol::CloseFrame;
+use tokio_tungstenite::{MaybeTlsStream, WebSocketStream};
+
+/// A connected socket of a client or a dashboard.
+pub type Socket = WebSocketStream<MaybeTlsStream<TcpStream>>;
+
 /// Longest that a test waits for anything but homing.
 pub const SOON: Duration = Duration::from_secs(10);
 /// Longest that a test waits for the simulated machine to home.
@@ -35,4 +44,18 @@ pub async fn eventually_within<T, F: Future<Output = Option<T>>>(
         }
     });
     answered.await.unwrap_or_else(|_| panic!("{what}: not within {longest:?}"))
+}
+
+/// How the server closes the connection.
+async fn close_frame(socket: &mut Socket) -> Option<CloseFrame> {
+    let closed = tokio::time::timeout(SOON, async {
+        loop {
+            match socket.next().await {
+                Some(Ok(Message::Close(frame))) => return frame,
+                Some(Ok(_)) => {}
+                Some(Err(_)) | None => return None,
+            }
+        }
+    });
+    closed.await.expect("the connection is closed in time")
 }

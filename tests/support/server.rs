@@ -11,7 +11,7 @@ use covr_server::control::Published;
 use covr_server::http::Problem;
 use covr_server::serve::Server;
 use covr_server::store::StoredToken;
-use reqwest::{Client, Method, Response};
+use reqwest::{Client, Method, RequestBuilder, Response};
 use serde_json::Value;
 use tempfile::TempDir;
 use tokio::sync::{OnceCell, oneshot};
@@ -88,13 +88,9 @@ impl TestServer {
         path: &str,
         body: Option<&str>,
     ) -> Response {
-        let method = Method::from_bytes(method.as_bytes()).unwrap();
-        let mut request = self.http.request(method, format!("http://{}{path}", self.host));
+        let mut request = self.request(method, path, body);
         if let Some(author) = author {
             request = request.header("X-Covr-Author", author);
-        }
-        if let Some(body) = body {
-            request = request.header("Content-Type", "application/json").body(body.to_owned());
         }
         request.send().await.unwrap()
     }
@@ -129,15 +125,20 @@ impl TestServer {
         path: &str,
         body: Option<&str>,
     ) -> Response {
-        let method = Method::from_bytes(method.as_bytes()).unwrap();
-        let mut request = self.http.request(method, format!("http://{}{path}", self.host));
+        let mut request = self.request(method, path, body);
         if let Some(token) = token {
             request = request.bearer_auth(token);
         }
-        if let Some(body) = body {
-            request = request.header("Content-Type", "application/json").body(body.to_owned());
-        }
         request.send().await.unwrap()
+    }
+
+    fn request(&self, method: &str, path: &str, body: Option<&str>) -> RequestBuilder {
+        let method = Method::from_bytes(method.as_bytes()).unwrap();
+        let request = self.http.request(method, format!("http://{}{path}", self.host));
+        match body {
+            Some(body) => request.header("Content-Type", "application/json").body(body.to_owned()),
+            None => request,
+        }
     }
 
     /// A call that succeeds; its JSON, which is as documented.
