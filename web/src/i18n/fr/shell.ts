@@ -156,7 +156,7 @@ export const shell = {
     stale: "périmé",
     noState: "aucun état",
     connecting: "connexion",
-    server: (version: string, machine: string) => `covr ${version}, machine : ${machine}`,
+    server: (version: string, machine: string) => `covr ${version}, ${machine === "simulated" ? "machine simulée" : `machine : ${machine}`}`,
     noClient: "aucun client VR",
     refused: (count: number) => (count === 1 ? "1 refusé" : `${count} refusés`),
     loop: (rate: string, p99: string, greatest: string, missed: number, steps: number) =>
