@@ -9,5 +9,7 @@
 //! - [`ideal`]: a machine that does exactly what it is told, for sweeps over rules rather than machines.
 
 pub mod contract;
+pub mod homing;
 pub mod ideal;
+mod settle;
 pub mod sim;

@@ -12,12 +12,10 @@
 mod axis;
 mod controller;
 pub mod faults;
-mod homing;
 mod host;
 mod link;
 pub mod parameters;
 mod plant;
-mod settle;
 
 use covr_engine::frames::{Floor, Planar};
 use covr_engine::machine::{Homing, Limits, MachineReport, Travel};

@@ -6,7 +6,7 @@
 use covr_engine::machine::AxisLimits;
 
 use super::parameters::{AxisParameters, MachineParameters};
-use super::settle::Settler;
+use crate::settle::Settler;
 
 /// One axis of the controller.
 #[derive(Debug, Clone)]

@@ -4,9 +4,9 @@
 
 use covr_engine::machine::{Drive, Homing};
 
-use super::axis::{AxisController, Gains, SpeedCourse, TICK_MICROS};
-use super::homing::{HomingAxis, HomingPlan, HomingStep};
+use super::axis::{AxisController, Gains, SpeedCourse, TICK_MICROS, TICK_SECS};
 use super::parameters::MachineParameters;
+use crate::homing::{HomingAxis, HomingPlan, HomingStep, RAMP_MPS2, Seen};
 
 /// Both axes with what they share.
 #[derive(Debug, Clone)]
@@ -48,7 +48,8 @@ impl Controller {
             homing: Homing::NotHomed,
             sequences: [HomingAxis::default(); 2],
             switches_m: None,
-            plans: [HomingPlan::new(machine, span.x), HomingPlan::new(machine, span.y)],
+            plans: [span.x, span.y]
+                .map(|span_m| HomingPlan::new(machine.homing, span_m + 2.0 * machine.stop_outside_m)),
             timeout_ticks: (machine.serial_timeout.micros() / TICK_MICROS) as u32,
             silent_ticks: 0,
             was_told_to_home: false,
@@ -131,8 +132,16 @@ impl Controller {
         let mut are_done = [false; 2];
         for i in 0..2 {
             let axis = &mut self.axes[i];
-            match self.sequences[i].step(&self.plans[i], axis, switches[i]) {
-                HomingStep::Move(course) => axis.go(course, u32::MAX),
+            let seen = Seen {
+                here_m: axis.measured_m(),
+                at_rest: axis.is_at_rest(),
+                on_switch: switches[i],
+                since_last_secs: TICK_SECS,
+            };
+            match self.sequences[i].step(&self.plans[i], seen) {
+                HomingStep::Move(target_mps) => {
+                    axis.go(SpeedCourse { target_mps, slope_mps2: 0.0, most_mps2: RAMP_MPS2 }, u32::MAX);
+                }
                 HomingStep::Brake => axis.brake(),
                 HomingStep::Rest { at_m } => axis.hold(at_m),
                 HomingStep::Done => are_done[i] = true,

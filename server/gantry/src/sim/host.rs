@@ -10,7 +10,7 @@ use covr_engine::time::Time;
 use super::axis::{SpeedCourse, TICK_MICROS};
 use super::controller::Packet;
 use super::parameters::MachineParameters;
-use super::settle::Settler;
+use crate::settle::Settler;
 
 /// The position loops of both axes.
 #[derive(Debug, Clone)]

@@ -11,6 +11,8 @@ use covr_engine::frames::Floor;
 use covr_engine::machine::{AxisLimits, Limits, Travel};
 use covr_engine::time::Span;
 
+use crate::homing::HomingParameters;
+
 /// A brushed DC motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorParameters {
@@ -56,19 +58,6 @@ pub struct Tuning {
     pub integral_rate_per_s: f64,
     /// Proportional gain of the position loop, 1/s.
     pub position_gain_per_s: f64,
-}
-
-/// How homing moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HomingParameters {
-    /// Towards the switch, and back into the room, m/s.
-    pub creep_mps: f64,
-    /// The last, measuring approach, m/s.
-    pub approach_mps: f64,
-    /// How far outside the travel's low end the switches trip, m.
-    pub switch_outside_m: f64,
-    /// How far inside the travel's corner it comes to rest once homed, m (outside the 2 cm of R1).
-    pub rest_inside_m: f64,
 }
 
 /// A whole simulated machine.

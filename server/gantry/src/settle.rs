@@ -5,14 +5,14 @@
 
 /// Whether the axis counts as settled.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Settler {
+pub(crate) struct Settler {
     is_settled: bool,
 }
 
 impl Settler {
     /// Whether to leave the axis alone, given the speed that the reference and the encoder have and the distance
     /// between them.
-    pub(super) fn is_settled(&mut self, reference_mps: f64, measured_mps: f64, error_m: f64) -> bool {
+    pub(crate) fn is_settled(&mut self, reference_mps: f64, measured_mps: f64, error_m: f64) -> bool {
         let is_resting = reference_mps.abs() < STILL_MPS;
         self.is_settled = if self.is_settled {
             is_resting && error_m.abs() < LEAVE_M
@@ -23,7 +23,7 @@ impl Settler {
     }
 
     /// Whether it was when last asked.
-    pub(super) const fn was_settled(self) -> bool {
+    pub(crate) const fn was_settled(self) -> bool {
         self.is_settled
     }
 }

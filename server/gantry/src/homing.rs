@@ -1,17 +1,15 @@
 //! The homing sequence of one axis: onto the switch at creep speed, back off, again and slower, to rest inside.
 //!
-//! It never moves faster than the creep speed, and gives up when it does not move or finds no switch.
-
-use super::axis::{AxisController, SpeedCourse, TICK_SECS};
-use super::parameters::{HomingParameters, MachineParameters};
+//! It never moves faster than the creep speed, and gives up when it does not move or finds no switch. Every machine
+//! here homes by it; where there is no switch, a machine says of the hard stop that it is one.
 
 /// Where one axis is in the sequence.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct HomingAxis {
+pub(crate) struct HomingAxis {
     phase: Phase,
     switch_m: Option<f64>,
     watched_m: f64,
-    watched_ticks: u32,
+    watched_secs: f64,
     phase_start_m: f64,
 }
 
@@ -42,30 +40,60 @@ enum Phase {
 
 /// Speeds and distances of the sequence.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct HomingPlan {
+pub(crate) struct HomingPlan {
     parameters: HomingParameters,
     longest_seek_m: f64,
 }
 
-/// What the axis is to do in this tick.
+/// How homing moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum HomingStep {
-    Move(SpeedCourse),
+pub struct HomingParameters {
+    /// Towards the switch, and back into the room, m/s.
+    pub creep_mps: f64,
+    /// The last, measuring approach, m/s.
+    pub approach_mps: f64,
+    /// How far outside the travel's low end the switches trip, m.
+    pub switch_outside_m: f64,
+    /// How far inside the travel's corner it comes to rest once homed, m (outside the 2 cm of R1).
+    pub rest_inside_m: f64,
+}
+
+/// What the axis says of itself at one step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seen {
+    /// Its place since power-on, m.
+    pub here_m: f64,
+    /// It neither moves nor is told to.
+    pub at_rest: bool,
+    /// It is on the switch, or against the hard stop that stands for one.
+    pub on_switch: bool,
+    /// Since the last step, s.
+    pub since_last_secs: f64,
+}
+
+/// What the axis is to do until the next step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum HomingStep {
+    /// Go at this speed, m/s, along a ramp of [`RAMP_MPS2`].
+    Move(f64),
     Brake,
-    Rest { at_m: f64 },
+    Rest {
+        at_m: f64,
+    },
     Done,
     Failed,
 }
 
 impl HomingPlan {
-    pub(super) fn new(machine: &MachineParameters, span_m: f64) -> Self {
-        Self { parameters: machine.homing, longest_seek_m: span_m + 2.0 * machine.stop_outside_m + SPARE_M }
+    /// For an axis that can move over this length, stops included, m.
+    pub(crate) fn new(parameters: HomingParameters, length_m: f64) -> Self {
+        Self { parameters, longest_seek_m: length_m + SPARE_M }
     }
 }
 
 impl HomingAxis {
-    pub(super) fn step(&mut self, plan: &HomingPlan, axis: &AxisController, on_switch: bool) -> HomingStep {
-        let here_m = axis.measured_m();
+    pub(crate) fn step(&mut self, plan: &HomingPlan, seen: Seen) -> HomingStep {
+        let Seen { here_m, at_rest, on_switch, since_last_secs } = seen;
         let p = &plan.parameters;
         match self.phase {
             Phase::Start => self.enter(if on_switch { Phase::Clearing } else { Phase::Seeking }, here_m),
@@ -73,32 +101,31 @@ impl HomingAxis {
             Phase::Clearing if here_m - self.phase_start_m > CLEAR_M => self.enter(Phase::Seeking, here_m),
             Phase::Seeking if on_switch => self.enter(Phase::Braking, here_m),
             Phase::Seeking if self.phase_start_m - here_m > plan.longest_seek_m => return HomingStep::Failed,
-            Phase::Braking if axis.is_at_rest() => self.enter(Phase::BackingOff, here_m),
+            Phase::Braking if at_rest => self.enter(Phase::BackingOff, here_m),
             Phase::BackingOff if on_switch => self.phase_start_m = here_m,
             Phase::BackingOff if here_m - self.phase_start_m > CLEAR_M => self.enter(Phase::Turning, here_m),
-            Phase::Turning if axis.is_at_rest() => self.enter(Phase::Approaching, here_m),
+            Phase::Turning if at_rest => self.enter(Phase::Approaching, here_m),
             Phase::Approaching if on_switch => {
                 self.switch_m = Some(here_m);
                 self.enter(Phase::Measured, here_m);
             }
-            Phase::Measured if axis.is_at_rest() => self.enter(Phase::Leaving, here_m),
+            Phase::Measured if at_rest => self.enter(Phase::Leaving, here_m),
             _ => {}
         }
-        let creep = |speed_mps| HomingStep::Move(course(speed_mps));
         let step = match self.phase {
-            Phase::Clearing | Phase::BackingOff => creep(p.creep_mps),
-            Phase::Start | Phase::Seeking => creep(-p.creep_mps),
-            Phase::Approaching => creep(-p.approach_mps),
+            Phase::Clearing | Phase::BackingOff => HomingStep::Move(p.creep_mps),
+            Phase::Start | Phase::Seeking => HomingStep::Move(-p.creep_mps),
+            Phase::Approaching => HomingStep::Move(-p.approach_mps),
             Phase::Braking | Phase::Turning | Phase::Measured => HomingStep::Brake,
             Phase::Leaving => self.leave(plan, here_m),
-            Phase::Resting if axis.is_at_rest() => HomingStep::Done,
+            Phase::Resting if at_rest => HomingStep::Done,
             Phase::Resting => HomingStep::Rest { at_m: self.rest_m(plan) },
         };
-        if self.is_stuck(here_m, step) { HomingStep::Failed } else { step }
+        if self.is_stuck(here_m, since_last_secs, step) { HomingStep::Failed } else { step }
     }
 
     /// Where the switch tripped on the measuring approach, m since power-on.
-    pub(super) const fn switch_m(&self) -> Option<f64> {
+    pub(crate) const fn switch_m(&self) -> Option<f64> {
         self.switch_m
     }
 
@@ -106,7 +133,7 @@ impl HomingAxis {
         self.phase = phase;
         self.phase_start_m = here_m;
         self.watched_m = here_m;
-        self.watched_ticks = 0;
+        self.watched_secs = 0.0;
     }
 
     fn rest_m(&self, plan: &HomingPlan) -> f64 {
@@ -121,27 +148,23 @@ impl HomingAxis {
             return HomingStep::Rest { at_m: self.rest_m(plan) };
         }
         let speed = plan.parameters.creep_mps.min((RAMP_MPS2 * left_m).sqrt());
-        HomingStep::Move(course(speed))
+        HomingStep::Move(speed)
     }
 
     /// Told to move, and has not for a while.
-    fn is_stuck(&mut self, here_m: f64, step: HomingStep) -> bool {
+    fn is_stuck(&mut self, here_m: f64, since_last_secs: f64, step: HomingStep) -> bool {
         let HomingStep::Move(_) = step else { return false };
         if (here_m - self.watched_m).abs() > PROGRESS_M {
             self.watched_m = here_m;
-            self.watched_ticks = 0;
+            self.watched_secs = 0.0;
         }
-        self.watched_ticks += 1;
-        f64::from(self.watched_ticks) * TICK_SECS > STUCK_SECS
+        self.watched_secs += since_last_secs;
+        self.watched_secs > STUCK_SECS
     }
 }
 
-fn course(speed_mps: f64) -> SpeedCourse {
-    SpeedCourse { target_mps: speed_mps, slope_mps2: 0.0, most_mps2: RAMP_MPS2 }
-}
-
 /// Ramps are gentle, and short enough to come to rest on the switch before the spring stops.
-const RAMP_MPS2: f64 = 1.0;
+pub(crate) const RAMP_MPS2: f64 = 1.0;
 /// How far off the switch it goes before it turns, m.
 const CLEAR_M: f64 = 0.01;
 /// From here the position loop takes the axis to its place of rest, m.
