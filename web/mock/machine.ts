@@ -230,6 +230,7 @@ export class MockMachine {
         scheduling: "normal scheduling, memory not locked (control.real_time is false)",
         scheduling_why: [{ id: "real_time_not_asked" }],
       },
+      machine_health: null,
       clients: [{ name: "mock visitor", convention: "openxr", poses: this.#generation * 3, pose_rate_hz: 90, rtt_millis: 0.6, persons: [1], pose_age_millis: 12, jitter_millis: 1.4, loss_percent: 0, errors: 0 }],
       scene_id: this.sceneId,
       session_id: 1,

@@ -8,6 +8,7 @@ mod intention;
 mod keys;
 mod load;
 mod origins;
+mod roboclaw;
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -24,6 +25,7 @@ pub use intention::ParametersRefused;
 pub use keys::{Key, all as keys};
 pub use load::{ConfigError, load, load_text, reference};
 pub use origins::{Loaded, Origins};
+pub use roboclaw::RoboClaw;
 
 /// Everything that can be configured.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,6 +114,8 @@ pub struct Machine {
     pub x: AxisLimits,
     /// The cross rail.
     pub y: AxisLimits,
+    /// What a RoboClaw machine needs beside.
+    pub roboclaw: RoboClaw,
 }
 
 /// What watches the arena beside the headsets.
@@ -126,6 +130,8 @@ pub struct Safety {
 pub enum MachineKind {
     /// The simulated machine.
     Simulated,
+    /// One or two RoboClaws.
+    RoboClaw,
 }
 
 /// What is known of people.
@@ -229,6 +235,7 @@ impl Default for Config {
                 parked_y_m: 0.3,
                 x: AxisLimits::PAPER,
                 y: AxisLimits::PAPER,
+                roboclaw: RoboClaw::default(),
             },
             safety: Safety::default(),
             people: People {
@@ -276,10 +283,14 @@ impl Machine {
 }
 
 impl MachineKind {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Simulated, Self::RoboClaw];
+
     /// The name on every surface.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Simulated => "simulated",
+            Self::RoboClaw => "roboclaw",
         }
     }
 }

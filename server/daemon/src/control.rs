@@ -22,7 +22,7 @@ use covr_engine::observation::{Observation, PersonId, PoseSample};
 use covr_engine::scene::Scene;
 use covr_engine::snapshot::Snapshot;
 use covr_engine::{Answer, Engine, Outlook, Request};
-use covr_gantry::contract::Gantry;
+use covr_gantry::contract::{Gantry, Health};
 use covr_wire::dashboard::ControlLoop;
 use covr_wire::reason::Reason;
 use tokio::sync::{mpsc, oneshot, watch};
@@ -78,6 +78,8 @@ pub struct Published {
     pub outlook: Outlook,
     /// The loop's health.
     pub control_loop: ControlLoop,
+    /// The machine's boards and link; none for a machine without any.
+    pub machine_health: Option<Arc<Health>>,
 }
 
 /// How the control thread ended.

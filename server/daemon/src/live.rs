@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 use covr_engine::engine::outlook::POINT_EVERY;
 use covr_engine::mode::Mode;
 use covr_engine::time::{Span, Time};
-use covr_wire::dashboard::{Snapshot, Surroundings, ToDashboard};
+use covr_gantry::contract::Health;
+use covr_wire::dashboard::{MachineHealth, MachineLink, Snapshot, Surroundings, ToDashboard};
 use metrics::{counter, gauge};
 use tokio::sync::watch;
 
@@ -24,6 +25,7 @@ fn with_path(app: &App, published: &Published, planned_path_m: Vec<[f64; 2]>) ->
         generation: published.generation,
         names: &app.persons.names(),
         control_loop: published.control_loop.clone(),
+        machine_health: published.machine_health.as_deref().map(machine_health),
         clients: app.clients.list(),
         scene_id: Some(app.stage.active().id),
         session_id: app.recorder.session_id(),
@@ -31,6 +33,30 @@ fn with_path(app: &App, published: &Published, planned_path_m: Vec<[f64; 2]>) ->
     let mut snapshot = Snapshot::new(&published.snapshot, around);
     snapshot.column.planned_path_m = planned_path_m;
     snapshot
+}
+
+fn machine_health(health: &Health) -> MachineHealth {
+    let link = &health.link;
+    MachineHealth {
+        firmware: health.firmware.clone(),
+        profile: health.profile.clone(),
+        trouble: health.trouble.map(Into::into),
+        condition: health.condition.clone(),
+        supply_volts: health.supply_volts,
+        temperature_c: health.temperature_c,
+        link: MachineLink {
+            rate_hz: link.rate_hz,
+            cycle_p50_micros: link.cycle_p50_micros,
+            cycle_p99_micros: link.cycle_p99_micros,
+            cycle_max_micros: link.cycle_max_micros,
+            exchanges: link.exchanges,
+            lost: link.lost,
+            repeated: link.repeated,
+            cycles_lost: link.cycles_lost,
+            last_loss: link.last_loss.clone(),
+            connections: link.connections,
+        },
+    }
 }
 
 /// Milliseconds of arithmetic: not on a thread that serves others. With the time that it took; empty if it was not finished.

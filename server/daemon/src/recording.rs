@@ -172,6 +172,7 @@ impl Sampler {
             generation: now.generation,
             names: &self.persons.names(),
             control_loop: now.control_loop.clone(),
+            machine_health: None,
             clients: Vec::new(),
             scene_id: None,
             session_id: None,

@@ -12,6 +12,7 @@ use covr_engine::safety::separation::KeptFrom;
 use covr_engine::time::Span;
 use covr_engine::{Engine, EngineConfig, Request};
 use covr_gantry::contract::Gantry;
+use covr_gantry::roboclaw::RoboClaw;
 use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::MachineParameters;
 use covr_wire::dashboard::MachineShape;
@@ -27,7 +28,7 @@ use crate::app::{App, Asker};
 use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::config::{Config, Loaded, MachineKind};
-use crate::control::{Control, Ended, Setup, StopLaneName};
+use crate::control::{Control, Ended, Setup, StopLaneName, real_time};
 use crate::http::Limits;
 use crate::inputs::InputLines;
 use crate::listen::{Listening, check_reach, check_tokens, listen, tls};
@@ -50,19 +51,26 @@ impl Server {
     /// Start: store, control thread, sockets. The machine starts disarmed, or latched if the last run ended so.
     pub async fn start(config: impl Into<Loaded>) -> anyhow::Result<Self> {
         let loaded = config.into();
-        let gantry = machine(&loaded.config)?;
-        Self::start_with(loaded, gantry).await
+        let clock = Clock::started_now();
+        let of = loaded.config.clone();
+        // A machine that is not there yet is waited for a little.
+        let gantry =
+            tokio::task::spawn_blocking(move || machine(&of, clock)).await.context("the machine")??;
+        Self::start_on(loaded, gantry, clock).await
     }
 
     /// The same with a machine of the caller's: for measurements and tests. Its travel and limits must be the
     /// configuration's.
     pub async fn start_with(config: impl Into<Loaded>, gantry: Box<dyn Gantry>) -> anyhow::Result<Self> {
-        let Loaded { config, origins } = config.into();
+        Self::start_on(config.into(), gantry, Clock::started_now()).await
+    }
+
+    async fn start_on(loaded: Loaded, gantry: Box<dyn Gantry>, clock: Clock) -> anyhow::Result<Self> {
+        let Loaded { config, origins } = loaded;
         check_reach(&config)?;
         let tls = tls(&config).await?;
         let intention = config.people.intention()?;
         let prometheus = meters::install()?;
-        let clock = Clock::started_now();
         let path = &config.server.database;
         let store = Store::open(path).await.with_context(|| format!("database {}", path.display()))?;
         let left_over = store.take_over().await.context("database")?;
@@ -292,7 +300,7 @@ async fn follow_tokens(app: Arc<App>) {
     }
 }
 
-fn machine(config: &Config) -> anyhow::Result<Box<dyn Gantry>> {
+fn machine(config: &Config, clock: Clock) -> anyhow::Result<Box<dyn Gantry>> {
     match config.machine.kind {
         MachineKind::Simulated => {
             let parked = Floor::new(config.machine.parked_x_m, config.machine.parked_y_m);
@@ -303,6 +311,17 @@ fn machine(config: &Config) -> anyhow::Result<Box<dyn Gantry>> {
                 ..MachineParameters::paper(config.machine.travel())
             };
             Ok(Box::new(SimulatedMachine::new(parameters).context("the simulated machine")?))
+        }
+        MachineKind::RoboClaw => {
+            let settings = config.machine.roboclaw.settings(config);
+            // Below the control thread, above everything else.
+            let priority = config.control.real_time.then(|| config.control.priority.saturating_sub(1).max(1));
+            let on_thread = move || {
+                let came_of_it = real_time::ask(priority);
+                tracing::debug!(?came_of_it, "the link thread's scheduling");
+            };
+            let machine = RoboClaw::start(settings, move || clock.now(), on_thread);
+            Ok(Box::new(machine.context("the RoboClaw machine")?))
         }
     }
 }

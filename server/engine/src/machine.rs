@@ -71,6 +71,61 @@ pub struct MachineReport {
     pub drive: Drive,
     /// How far homing is.
     pub homing: Homing,
+    /// Why it cannot be driven now, though it may answer (R8).
+    pub trouble: Option<Trouble>,
+}
+
+/// Why a machine cannot be driven, in its own words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Trouble {
+    /// Its port cannot be opened.
+    NoPort,
+    /// Nothing answers there.
+    NoAnswer,
+    /// Its controller has a firmware that the driver does not know.
+    UnknownFirmware,
+    /// Its controller does not keep a setting.
+    NotConfigured,
+    /// Its controller has restarted, and forgotten its settings.
+    Restarted,
+    /// The wired emergency stop is active at the controller.
+    EmergencyStop,
+    /// A bridge of the controller is broken.
+    DriverFault,
+    /// The controller is too hot.
+    TooHot,
+    /// A supply of the controller is too high or too low.
+    BadSupply,
+}
+
+impl Trouble {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::NoPort,
+        Self::NoAnswer,
+        Self::UnknownFirmware,
+        Self::NotConfigured,
+        Self::Restarted,
+        Self::EmergencyStop,
+        Self::DriverFault,
+        Self::TooHot,
+        Self::BadSupply,
+    ];
+
+    /// The name on every surface.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::NoPort => "no_port",
+            Self::NoAnswer => "no_answer",
+            Self::UnknownFirmware => "unknown_firmware",
+            Self::NotConfigured => "not_configured",
+            Self::Restarted => "restarted",
+            Self::EmergencyStop => "emergency_stop",
+            Self::DriverFault => "driver_fault",
+            Self::TooHot => "too_hot",
+            Self::BadSupply => "bad_supply",
+        }
+    }
 }
 
 impl AxisLimits {

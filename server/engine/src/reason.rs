@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use crate::machine::Trouble;
 use crate::mode::{Mode, RequestKind};
 use crate::observation::PersonId;
 use crate::snapshot::RuleId;
@@ -97,6 +98,8 @@ pub enum Reason {
     NoAnswerYet,
     /// R8: no good answer for so long, ms.
     NoGoodAnswer(i64),
+    /// R8: the machine cannot be driven, for a reason of its own.
+    MachineTrouble(Trouble),
     /// R8: the controller answers.
     ControllerAnswers,
     /// R9: control steps begin in time.

@@ -1,8 +1,10 @@
 //! What every machine offers: the control thread reads, updates the engine, writes; once a period.
 
+use std::sync::Arc;
+
 use crate::sim::faults::Faults;
 use covr_engine::frames::{Floor, Planar};
-use covr_engine::machine::{Limits, MachineReport, Travel};
+use covr_engine::machine::{Limits, MachineReport, Travel, Trouble};
 use covr_engine::safety::vetted::Vetted;
 use covr_engine::time::{Span, Time};
 
@@ -21,6 +23,15 @@ pub trait Gantry: Send {
     /// Tell the machine what to do from `now` on. An error means that the machine did not take the command: what it
     /// does next is what its own dead-man does.
     fn write(&mut self, now: Time, command: &Vetted) -> Result<(), NotTaken>;
+
+    /// When the newest command was vetted that the machine has confirmed. A machine behind a slow link confirms later than
+    /// `write` returns; a stop is acknowledged by this.
+    fn taken(&self) -> Time;
+
+    /// What is known of boards and link beyond the report; none for a machine without any.
+    fn health(&self) -> Option<Arc<Health>> {
+        None
+    }
 
     /// What people call this machine.
     fn name(&self) -> &str;
@@ -48,6 +59,50 @@ pub struct Reading {
     pub report: MachineReport,
     /// Whether this very reading was answered.
     pub link: Result<(), LinkError>,
+}
+
+/// What a machine says of its boards and its link, for people to look at.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Health {
+    /// The firmware's own words.
+    pub firmware: Option<String>,
+    /// By which known firmware it is driven.
+    pub profile: Option<String>,
+    /// Why it cannot be driven now.
+    pub trouble: Option<Trouble>,
+    /// The same in the driver's words; empty when nothing is wrong.
+    pub condition: String,
+    /// Supply, V.
+    pub supply_volts: Option<f64>,
+    /// Board temperature, degrees Celsius.
+    pub temperature_c: Option<f64>,
+    /// The link.
+    pub link: LinkFigures,
+}
+
+/// What a link has been like.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LinkFigures {
+    /// Whole cycles (a command and a look) a second, over the last half second.
+    pub rate_hz: f64,
+    /// Median of a cycle's time over the same, us.
+    pub cycle_p50_micros: f64,
+    /// Its 99th percentile, us.
+    pub cycle_p99_micros: f64,
+    /// Its greatest, us.
+    pub cycle_max_micros: f64,
+    /// Exchanges that were answered.
+    pub exchanges: u64,
+    /// Exchanges that were not, or not well.
+    pub lost: u64,
+    /// Of these, sent again.
+    pub repeated: u64,
+    /// Cycles without a whole look.
+    pub cycles_lost: u64,
+    /// How the last of them was lost; empty for none.
+    pub last_loss: String,
+    /// How often the boards were found.
+    pub connections: u64,
 }
 
 /// The true state of a simulated machine, room frame.

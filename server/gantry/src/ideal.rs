@@ -21,6 +21,7 @@ pub struct IdealMachine {
     now: Time,
     position: Floor,
     velocity: Planar,
+    taken: Time,
 }
 
 /// What moves it.
@@ -45,6 +46,7 @@ impl IdealMachine {
             now: Time::ZERO,
             position: start,
             velocity: Planar::ZERO,
+            taken: Time::ZERO,
         }
     }
 
@@ -116,6 +118,7 @@ impl Gantry for IdealMachine {
             current_amps: [0.0; 2],
             drive: self.drive,
             homing: self.homing,
+            trouble: None,
         };
         Reading { report, link: Ok(()) }
     }
@@ -143,7 +146,14 @@ impl Gantry for IdealMachine {
                 self.advance(now);
             }
         }
+        if outcome.is_ok() {
+            self.taken = command.at();
+        }
         outcome
+    }
+
+    fn taken(&self) -> Time {
+        self.taken
     }
 
     fn name(&self) -> &str {

@@ -6,10 +6,12 @@
 //!
 //! - [`contract`]: what every machine offers: read, update, write.
 //! - [`sim`]: a simulated gantry with motors, friction, encoders, a velocity controller, and faults to switch on.
+//! - [`roboclaw`]: one or two RoboClaw controllers on a serial line.
 //! - [`ideal`]: a machine that does exactly what it is told, for sweeps over rules rather than machines.
 
 pub mod contract;
 pub mod homing;
 pub mod ideal;
+pub mod roboclaw;
 mod settle;
 pub mod sim;

@@ -45,6 +45,7 @@ pub struct SimulatedMachine {
     /// Where the motion has got to; none before the first call.
     clock: Option<Time>,
     last_report: MachineReport,
+    taken: Time,
 }
 
 impl SimulatedMachine {
@@ -64,6 +65,7 @@ impl SimulatedMachine {
             current_amps: [0.0; 2],
             drive: controller.drive(),
             homing: controller.homing(),
+            trouble: None,
         };
         Ok(Self {
             faults: Faults::default(),
@@ -75,6 +77,7 @@ impl SimulatedMachine {
             plants,
             controller,
             last_report,
+            taken: Time::ZERO,
         })
     }
 
@@ -170,6 +173,7 @@ impl SimulatedMachine {
             current_amps: [amps(0), amps(1)],
             drive: self.controller.drive(),
             homing,
+            trouble: None,
         }
     }
 
@@ -231,7 +235,14 @@ impl Gantry for SimulatedMachine {
         }
         let (packet, outcome) = self.packet_for(now, command);
         self.link.send(now, packet, self.faults.link);
+        if outcome.is_ok() {
+            self.taken = command.at();
+        }
         outcome
+    }
+
+    fn taken(&self) -> Time {
+        self.taken
     }
 
     fn name(&self) -> &str {

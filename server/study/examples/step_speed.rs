@@ -72,6 +72,7 @@ fn look(load: &Load, out: &mut impl Write) -> Result<(), Box<dyn Error>> {
             generation,
             names: &names,
             control_loop,
+            machine_health: None,
             clients,
             scene_id: Some(1),
             session_id: None,

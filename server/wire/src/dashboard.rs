@@ -5,6 +5,7 @@
 
 mod convert;
 mod event;
+mod health;
 mod snapshot;
 
 use schemars::JsonSchema;
@@ -14,6 +15,7 @@ use ts_rs::TS;
 pub use convert::{Surroundings, request_name};
 pub(crate) use convert::{clears_when, name_of};
 pub use event::rule_title;
+pub use health::{MachineHealth, MachineLink};
 pub use snapshot::{
     Activity, Client, Column, ControlLoop, Decision, Mode, Object, Person, RequestState, RuleState,
     RuleStatus, SeparationTerm, SeparationTerms, Snapshot, StopCause,

@@ -17,8 +17,8 @@ use crate::client::{
 };
 use crate::convention::ClientFrame;
 use crate::dashboard::{
-    Client, Event, FromDashboard, LinkThresholds, MachineRequest, MachineShape, Outcome, Snapshot,
-    Surroundings, ToDashboard,
+    Client, Event, FromDashboard, LinkThresholds, MachineHealth, MachineLink, MachineRequest, MachineShape,
+    Outcome, Snapshot, Surroundings, ToDashboard,
 };
 use crate::reason::Reason;
 use crate::sample;
@@ -36,11 +36,36 @@ pub fn snapshot() -> Snapshot {
         generation: 214,
         names: &names,
         control_loop: sample::control_loop(),
+        machine_health: Some(machine_health()),
         clients: vec![client()],
         scene_id: Some(4),
         session_id: Some(17),
     };
     Snapshot::new(&sample::snapshot(), around)
+}
+
+/// A RoboClaw in order.
+pub fn machine_health() -> MachineHealth {
+    MachineHealth {
+        firmware: Some("USB Roboclaw 2x30a v4.1.34".into()),
+        profile: Some("4.1".into()),
+        trouble: None,
+        condition: String::new(),
+        supply_volts: Some(24.1),
+        temperature_c: Some(31.5),
+        link: MachineLink {
+            rate_hz: 112.0,
+            cycle_p50_micros: 8_700.0,
+            cycle_p99_micros: 9_400.0,
+            cycle_max_micros: 29_800.0,
+            exchanges: 40_312,
+            lost: 3,
+            repeated: 2,
+            cycles_lost: 1,
+            last_loss: "command 51: 0 of 1 bytes came within 20 ms".into(),
+            connections: 1,
+        },
+    }
 }
 
 /// A request's record.

@@ -6,6 +6,7 @@ mod convert;
 mod decision;
 mod examples;
 mod latched;
+mod trouble;
 mod words;
 
 use schemars::JsonSchema;
@@ -14,6 +15,7 @@ use ts_rs::TS;
 
 pub use decision::decision;
 pub use latched::{last_run, latch_record};
+pub use trouble::MachineTrouble;
 pub(crate) use words::in_words;
 
 use crate::dashboard::Mode;
@@ -163,6 +165,11 @@ pub enum Reason {
         /// For how long, ms.
         #[ts(type = "number")]
         silent_millis: i64,
+    },
+    /// R8: the machine cannot be driven.
+    MachineTrouble {
+        /// What it says.
+        trouble: MachineTrouble,
     },
     /// R8: kept.
     ControllerAnswers,

@@ -138,6 +138,10 @@ impl Gantry for Noting {
         taken
     }
 
+    fn taken(&self) -> Time {
+        self.machine.taken()
+    }
+
     fn name(&self) -> &str {
         "ideal"
     }

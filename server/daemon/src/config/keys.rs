@@ -3,6 +3,7 @@
 
 mod links;
 mod place;
+mod roboclaw;
 
 use covr_wire::accepts::Accepts;
 use toml::Value;
@@ -154,6 +155,9 @@ pub fn all() -> Vec<Key> {
             "Greatest jerk along the cross rail, m/s3.",
             jerk(|c| &mut c.machine.y.jerk_mps3),
         ),
+    ];
+    keys.extend(roboclaw::keys());
+    keys.extend([
         Key::new(
             "safety.inputs",
             "Digital inputs: of kind \"stop\" (latched, R4) or \"intruder\" (protective stop, R12), from a serial port, a pseudo-terminal or a FIFO with a line \
@@ -243,7 +247,7 @@ pub fn all() -> Vec<Key> {
             "Events that may wait for a slow dashboard before it is disconnected to start afresh.",
             Place::Whole(16..=65_536, |c| &mut c.dashboards.event_queue),
         ),
-    ];
+    ]);
     keys.extend(links::keys());
     keys.extend([
         Key::new(

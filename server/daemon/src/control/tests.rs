@@ -35,6 +35,7 @@ struct Puppet {
     told: Arc<Mutex<Vec<Action>>>,
     /// It takes no command.
     deaf: Arc<AtomicBool>,
+    taken: Time,
 }
 
 impl Gantry for Puppet {
@@ -54,6 +55,7 @@ impl Gantry for Puppet {
             current_amps: [0.0; 2],
             drive: Drive::On,
             homing: Homing::Homed,
+            trouble: None,
         };
         Reading { report, link: Ok(()) }
     }
@@ -63,7 +65,12 @@ impl Gantry for Puppet {
             return Err(NotTaken::NotHomed);
         }
         self.told.lock().unwrap().push(command.action());
+        self.taken = command.at();
         Ok(())
+    }
+
+    fn taken(&self) -> Time {
+        self.taken
     }
 
     fn name(&self) -> &str {
@@ -91,7 +98,7 @@ fn start() -> Stage {
     let (whims, whims_out) = std_mpsc::channel();
     let told = Arc::new(Mutex::new(Vec::new()));
     let deaf = Arc::new(AtomicBool::new(false));
-    let puppet = Puppet { whims: whims_out, told: told.clone(), deaf: deaf.clone() };
+    let puppet = Puppet { whims: whims_out, told: told.clone(), deaf: deaf.clone(), taken: Time::ZERO };
     let (_, scene) = parse_scene(include_bytes!("../../../../deploy/scenes/demo.json")).unwrap();
     let period = Duration::from_millis(4);
     let config = EngineConfig {

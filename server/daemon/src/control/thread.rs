@@ -57,6 +57,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
         scene: engine.scene().clone(),
         outlook: engine.outlook(now),
         control_loop: control_loop.clone(),
+        machine_health: drive.gantry.health(),
     };
     let published = watch::Sender::new(Arc::new(first));
     let published_out = published.subscribe();
@@ -71,7 +72,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
         inbox: Inbox::new(asks_out, facts_out),
         stops: stops.clone(),
         stops_seen: [0; 4],
-        stops_unacknowledged: false,
+        stops_unacknowledged: None,
         quit: quit.clone(),
         events: setup.events,
         events_dropped: events_dropped.clone(),
@@ -109,8 +110,8 @@ struct Run {
     inbox: Inbox,
     stops: Arc<[StopLane; 4]>,
     stops_seen: [u64; 4],
-    /// Stops were pressed, and the machine has taken no command since.
-    stops_unacknowledged: bool,
+    /// The command of the first step with a stop that the machine has not confirmed yet was vetted then.
+    stops_unacknowledged: Option<Time>,
     quit: Arc<AtomicBool>,
     events: Sender<Record>,
     events_dropped: Arc<AtomicU64>,
@@ -167,7 +168,10 @@ impl Run {
         // Stops come last, so that no request of the same tick undoes one.
         let pressed = self.take_stops(now);
         let command = self.engine.step(now);
-        let taken = self.drive.write(&command, now);
+        if pressed {
+            self.stops_unacknowledged.get_or_insert(command.at());
+        }
+        self.drive.write(&command, now);
         let written = Instant::now();
         self.control_loop.steps += 1;
 
@@ -187,7 +191,8 @@ impl Run {
             let _ = reply.send(answer);
         }
         // Only a command that the machine took acknowledges a stop; until one is, the presser is told so.
-        if taken && std::mem::take(&mut self.stops_unacknowledged) {
+        if self.stops_unacknowledged.is_some_and(|since| self.drive.gantry.taken() >= since) {
+            self.stops_unacknowledged = None;
             for (lane, presses) in self.stops.iter().zip(self.stops_seen) {
                 lane.acknowledge(presses, written);
             }
@@ -205,7 +210,6 @@ impl Run {
                 self.engine.request(now, Request::Machine(RequestKind::Stop, Some(lane.reason())));
             }
         }
-        self.stops_unacknowledged |= pressed;
         pressed
     }
 
@@ -222,6 +226,7 @@ impl Run {
             scene: self.engine.scene().clone(),
             outlook: self.engine.outlook(now),
             control_loop: self.control_loop.clone(),
+            machine_health: self.drive.gantry.health(),
         }));
     }
 }
@@ -232,8 +237,8 @@ impl Drive {
         engine.observe(now, Observation::Machine(reading.report));
     }
 
-    /// Whether the machine took it. A refused command is R8's to act on; here it is said once until one is taken again.
-    fn write(&mut self, command: &Vetted, now: Time) -> bool {
+    /// A refused command is R8's to act on; here it is said once until one is taken again.
+    fn write(&mut self, command: &Vetted, now: Time) {
         self.last = command.action();
         let taken = self.gantry.write(now, command);
         if let Err(why) = &taken
@@ -242,7 +247,6 @@ impl Drive {
             self.say_refused(why);
         }
         self.refusing = taken.is_err();
-        taken.is_ok()
     }
 
     fn say_refused(&self, why: &NotTaken) {

@@ -76,6 +76,7 @@ impl Room {
                 current_amps: [0.5; 2],
                 drive: Drive::Released,
                 homing: Homing::NotHomed,
+                trouble: None,
             },
             head: None,
             walk_mps: (0.0, 0.0),

@@ -206,8 +206,11 @@ impl Supervisor {
         let p = self.parameters;
         let silence = now - report.answered_at;
         let dead = silence > p.link;
-        self.set(RuleId(8), breach_if(dead), now, events, || {
-            if dead { Reason::NoGoodAnswer(silence.micros() / 1000) } else { Reason::ControllerAnswers }
+        let trouble = report.trouble;
+        self.set(RuleId(8), breach_if(dead || trouble.is_some()), now, events, || match trouble {
+            Some(trouble) => Reason::MachineTrouble(trouble),
+            None if dead => Reason::NoGoodAnswer(silence.micros() / 1000),
+            None => Reason::ControllerAnswers,
         });
         let homed = report.homing == Homing::Homed;
         let beyond = if homed { -watched.travel.depth_m(report.position) } else { 0.0 };

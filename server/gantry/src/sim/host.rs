@@ -96,6 +96,7 @@ mod tests {
             current_amps: [0.0; 2],
             drive: Drive::On,
             homing: Homing::Homed,
+            trouble: None,
         }
     }
 

@@ -12,8 +12,9 @@ use covr_engine::{Outcome as EngineOutcome, Request};
 
 use super::event::rule_title;
 use super::{
-    Activity, Client, Column, ControlLoop, MachineRequest, MachineShape, Mode, Object, Outcome, Person,
-    RequestState, RuleState, RuleStatus, SeparationTerm, SeparationTerms, Snapshot, StopCause, ToDashboard,
+    Activity, Client, Column, ControlLoop, MachineHealth, MachineRequest, MachineShape, Mode, Object,
+    Outcome, Person, RequestState, RuleState, RuleStatus, SeparationTerm, SeparationTerms, Snapshot,
+    StopCause, ToDashboard,
 };
 use crate::reason::{self, Reason};
 
@@ -26,6 +27,8 @@ pub struct Surroundings<'a> {
     pub names: &'a BTreeMap<PersonId, String>,
     /// The control loop's health.
     pub control_loop: ControlLoop,
+    /// The machine's boards and link.
+    pub machine_health: Option<MachineHealth>,
     /// Connected VR clients.
     pub clients: Vec<Client>,
     /// Store id of the active scene.
@@ -61,6 +64,7 @@ impl Snapshot {
             motion: state.motion.into(),
             none_probability: state.none_probability,
             control_loop: around.control_loop,
+            machine_health: around.machine_health,
             clients: around.clients,
             scene_id: around.scene_id,
             session_id: around.session_id,
@@ -315,6 +319,7 @@ mod tests {
             generation: 9,
             names: &names,
             control_loop: sample::control_loop(),
+            machine_health: None,
             clients: Vec::new(),
             scene_id: Some(4),
             session_id: None,

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
+use super::MachineHealth;
 use crate::reason::Reason;
 
 /// Everything at one moment; also the body of `GET /api/v1/state`.
@@ -42,6 +43,8 @@ pub struct Snapshot {
     pub none_probability: f64,
     /// The control loop's health.
     pub control_loop: ControlLoop,
+    /// The machine's boards and link; null for a machine without any.
+    pub machine_health: Option<MachineHealth>,
     /// Connected VR clients.
     pub clients: Vec<Client>,
     /// Store id of the active scene.

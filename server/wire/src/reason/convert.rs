@@ -59,6 +59,7 @@ impl Reason {
             Engine::HomeLost => Self::HomeLost,
             Engine::NoAnswerYet => Self::NoAnswerYet,
             Engine::NoGoodAnswer(millis) => Self::NoGoodAnswer { silent_millis: *millis },
+            Engine::MachineTrouble(trouble) => Self::MachineTrouble { trouble: (*trouble).into() },
             Engine::ControllerAnswers => Self::ControllerAnswers,
             Engine::StepsInTime => Self::StepsInTime,
             Engine::StepsLate(steps) => Self::StepsLate { steps: *steps },

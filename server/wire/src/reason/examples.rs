@@ -1,6 +1,6 @@
 //! One of each.
 
-use super::Reason;
+use super::{MachineTrouble, Reason};
 use crate::dashboard::Mode;
 
 impl Reason {
@@ -44,6 +44,7 @@ impl Reason {
             Self::HomeLost,
             Self::NoAnswerYet,
             Self::NoGoodAnswer { silent_millis: 120 },
+            Self::MachineTrouble { trouble: MachineTrouble::EmergencyStop },
             Self::ControllerAnswers,
             Self::StepsInTime,
             Self::StepsLate { steps: 4 },

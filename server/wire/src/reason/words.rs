@@ -73,6 +73,7 @@ impl fmt::Display for Reason {
             Self::NoSwitchFound => write!(f, "homing found no switch"),
             Self::HomeLost => write!(f, "the machine has lost its home"),
             Self::NoAnswerYet => write!(f, "the machine has not answered yet"),
+            Self::MachineTrouble { trouble } => write!(f, "{trouble}"),
             Self::NoGoodAnswer { silent_millis } => write!(f, "no good answer for {silent_millis} ms"),
             Self::ControllerAnswers => write!(f, "the controller answers"),
             Self::StepsInTime => write!(f, "control steps begin in time"),

@@ -2,6 +2,7 @@
 import type { Client } from "./Client";
 import type { Column } from "./Column";
 import type { ControlLoop } from "./ControlLoop";
+import type { MachineHealth } from "./MachineHealth";
 import type { Mode } from "./Mode";
 import type { Object } from "./Object";
 import type { Person } from "./Person";
@@ -73,6 +74,10 @@ none_probability: number,
  * The control loop's health.
  */
 control_loop: ControlLoop, 
+/**
+ * The machine's boards and link; null for a machine without any.
+ */
+machine_health: MachineHealth | null, 
 /**
  * Connected VR clients.
  */

@@ -1,5 +1,19 @@
 /** Reasons: why a rule stands as it does, why the column does what it does, why a request was answered so. */
+import type { MachineTrouble } from "../../api/types";
 import { AT_RAD, type ReasonSentences } from "../reasons";
+
+/** What keeps a machine from being driven. */
+export const troubles: Record<MachineTrouble, string> = {
+  no_port: "the port of the motor controller cannot be opened",
+  no_answer: "the motor controller does not answer",
+  unknown_firmware: "the motor controller has a firmware that is not known here",
+  not_configured: "the motor controller does not keep a setting",
+  restarted: "the motor controller has restarted and forgotten its settings",
+  emergency_stop: "the wired emergency stop is active",
+  driver_fault: "a bridge of the motor controller is broken",
+  too_hot: "the motor controller is too hot",
+  bad_supply: "a supply of the motor controller is too high or too low",
+};
 
 /** By the id that the server sends; the same sentences as the server's own. */
 export const reasons: ReasonSentences = {
@@ -39,6 +53,7 @@ export const reasons: ReasonSentences = {
   no_switch_found: () => "homing found no switch",
   home_lost: () => "the machine has lost its home",
   no_answer_yet: () => "the machine has not answered yet",
+  machine_trouble: ({ trouble }) => troubles[trouble],
   no_good_answer: ({ silent_millis }) => `no good answer for ${silent_millis} ms`,
   controller_answers: () => "the controller answers",
   steps_in_time: () => "control steps begin in time",

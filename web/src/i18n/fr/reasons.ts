@@ -1,5 +1,19 @@
 /** Motifs : pourquoi une règle est dans cet état, pourquoi la colonne fait ce qu’elle fait, pourquoi une demande a reçu cette réponse. */
+import type { MachineTrouble } from "../../api/types";
 import { AT_RAD, type ReasonSentences } from "../reasons";
+
+/** Ce qui empêche de piloter la machine. */
+export const troubles: Record<MachineTrouble, string> = {
+  no_port: "le port du contrôleur de moteurs ne s’ouvre pas",
+  no_answer: "le contrôleur de moteurs ne répond pas",
+  unknown_firmware: "le micrologiciel du contrôleur de moteurs n’est pas connu ici",
+  not_configured: "le contrôleur de moteurs ne garde pas un réglage",
+  restarted: "le contrôleur de moteurs a redémarré et oublié ses réglages",
+  emergency_stop: "l’arrêt d’urgence câblé est actif",
+  driver_fault: "un pont du contrôleur de moteurs est défectueux",
+  too_hot: "le contrôleur de moteurs est trop chaud",
+  bad_supply: "une alimentation du contrôleur de moteurs est trop haute ou trop basse",
+};
 
 /** Selon l’identifiant envoyé par le serveur. */
 export const reasons: ReasonSentences = {
@@ -39,6 +53,7 @@ export const reasons: ReasonSentences = {
   no_switch_found: () => "la prise d’origine n’a trouvé aucune fin de course",
   home_lost: () => "la machine a perdu son origine",
   no_answer_yet: () => "la machine n’a pas encore répondu",
+  machine_trouble: ({ trouble }) => troubles[trouble],
   no_good_answer: ({ silent_millis }) => `aucune réponse valable depuis ${silent_millis} ms`,
   controller_answers: () => "le contrôleur répond",
   steps_in_time: () => "les pas de commande commencent à l’heure",

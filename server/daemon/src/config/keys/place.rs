@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use covr_engine::intention::RuleName;
 use covr_engine::motion::MotionName;
 use covr_engine::motion::standing::StandingName;
+use covr_gantry::roboclaw::settings::HomeBy;
 use covr_wire::accepts::Accepts;
 use toml::Value;
 
@@ -31,6 +32,7 @@ pub enum Place {
     Motion(fn(&mut Config) -> &mut MotionName),
     Standing(fn(&mut Config) -> &mut Option<StandingName>),
     Machine(fn(&mut Config) -> &mut MachineKind),
+    HomeBy(fn(&mut Config) -> &mut HomeBy),
     LogFormat(fn(&mut Config) -> &mut LogFormat),
 }
 
@@ -55,7 +57,8 @@ impl Place {
             Place::Standing(_) => {
                 one_of([BY_THE_RULE].into_iter().chain(StandingName::ALL.map(StandingName::name)))
             }
-            Place::Machine(_) => one_of([MachineKind::Simulated.name()]),
+            Place::Machine(_) => one_of(MachineKind::ALL.map(MachineKind::name)),
+            Place::HomeBy(_) => one_of(HOME_BY.map(|(_, name)| name)),
             Place::LogFormat(_) => one_of(["text", "json"]),
         }
     }
@@ -91,6 +94,11 @@ impl Place {
                 Value::String(place(&mut config).map_or(BY_THE_RULE, StandingName::name).into())
             }
             Place::Machine(place) => Value::String(place(&mut config).name().into()),
+            Place::HomeBy(place) => {
+                let in_force = *place(&mut config);
+                let name = HOME_BY.iter().find(|(home_by, _)| *home_by == in_force);
+                Value::String(name.map_or("", |(_, name)| name).into())
+            }
             Place::LogFormat(place) => Value::String(
                 match place(&mut config) {
                     LogFormat::Text => "text",
@@ -143,10 +151,12 @@ impl Place {
                 }
             }
             Place::Machine(place) => {
-                *place(config) = match value.as_str()? {
-                    "simulated" => MachineKind::Simulated,
-                    _ => return None,
-                }
+                let found = value.as_str()?;
+                *place(config) = MachineKind::ALL.into_iter().find(|kind| kind.name() == found)?;
+            }
+            Place::HomeBy(place) => {
+                let found = value.as_str()?;
+                *place(config) = HOME_BY.iter().find(|(_, name)| *name == found)?.0;
             }
             Place::LogFormat(place) => {
                 *place(config) = match value.as_str()? {
@@ -163,6 +173,9 @@ impl Place {
 fn one_of(names: impl IntoIterator<Item = &'static str>) -> Accepts {
     Accepts::OneOf { names: names.into_iter().map(str::to_owned).collect() }
 }
+
+/// What homing looks for, by name.
+const HOME_BY: [(HomeBy, &str); 2] = [(HomeBy::Switches, "switches"), (HomeBy::Stops, "stops")];
 
 /// The word for a standing place as the intention rule has it.
 const BY_THE_RULE: &str = "rule";

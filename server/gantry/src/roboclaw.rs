@@ -1,0 +1,27 @@
+//! RoboClaw motor controllers over packet serial: the machine of the paper.
+//!
+//! ```text
+//! control thread                      link thread                                    board
+//! write ─▶ order ─────▶ position loop, homing ─▶ speed, acceleration, distance cap ─▶ velocity loop
+//! read  ◀─ state ◀──── counts, speeds, currents, status ◀───────────────────────────── encoders
+//! ```
+//!
+//! The control thread hands over its newest order and takes the newest state, and waits for nothing. The link thread
+//! owns the port. A board is connected, then identified, then configured, each a type of its own; only a configured one
+//! has a verb that moves. Three dead-men lie inside each other: an order that grows old is a hold, each motion carries the distance
+//! after which the board brakes by itself, and the board's serial timeout stops it when nothing comes at all.
+
+mod board;
+mod contact;
+mod driver;
+mod exchange;
+mod figures;
+mod firmware;
+mod follow;
+mod link;
+mod machine;
+mod packet;
+mod port;
+pub mod settings;
+
+pub use machine::RoboClaw;

@@ -1,0 +1,122 @@
+//! Firmware profiles: what differs between the maker's firmwares and could hurt somebody if it were guessed.
+//!
+//! Two manuals are known. In the older one (firmware 4.1) a status has 16 bits with the emergency stop at 0x0004, and pin mode 1 is the
+//! *latching* emergency stop. In the newer one a status has 32 bits with the emergency stop at 0x000001, and pin mode 1 is the one
+//! that does *not* latch. A board of any other firmware is not driven.
+
+/// A firmware whose tables are known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Firmware {
+    /// 4.1: status of 16 bits.
+    Older,
+    /// 4.2 and 4.3: status of 32 bits.
+    Newer,
+}
+
+/// What a status says, whatever the bits are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Status {
+    /// The emergency stop's pin is active, or latched.
+    pub emergency_stop: bool,
+    /// A bridge is broken.
+    pub driver_fault: bool,
+    /// The board is too hot and has switched off.
+    pub too_hot: bool,
+    /// A supply is outside what the board stands, and it has switched off.
+    pub bad_supply: bool,
+    /// The board limits a motor's current now.
+    pub current_limited: [bool; 2],
+    /// The home switches of M1 and M2.
+    pub at_switch: [bool; 2],
+}
+
+impl Firmware {
+    /// The profile of a version text such as `USB Roboclaw 2x30a v4.1.34`; none when it is not one of the known.
+    pub fn of(text: &str) -> Option<Self> {
+        let version = text.rsplit_once(" v")?.1;
+        let mut parts = version.split('.');
+        match (parts.next()?, parts.next()?) {
+            ("4", "1") => Some(Self::Older),
+            ("4", "2" | "3") => Some(Self::Newer),
+            _ => None,
+        }
+    }
+
+    /// The name on every surface.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Older => "4.1",
+            Self::Newer => "4.2 and 4.3",
+        }
+    }
+
+    /// Bytes of a status.
+    pub const fn status_bytes(self) -> usize {
+        match self {
+            Self::Older => 2,
+            Self::Newer => 4,
+        }
+    }
+
+    /// The modes of S3, S4 and S5: an emergency stop that latches until the power is off, and the home switches of M1 and M2 if there are some.
+    ///
+    /// Manual, command 74. The newer firmware has a limit mode, which stops at the switch and leaves the count alone; the older resets the count there.
+    pub const fn pin_modes(self, with_switches: bool) -> [u8; 3] {
+        let (latching, switch) = match self {
+            Self::Older => (0x01, 0x04),
+            Self::Newer => (0x81, 0x22),
+        };
+        if with_switches { [latching, switch, switch] } else { [latching, 0, 0] }
+    }
+
+    /// What the bits mean (manual, command 90).
+    pub const fn status(self, bits: u32) -> Status {
+        match self {
+            Self::Older => Status {
+                emergency_stop: bits & 0x0004 != 0,
+                driver_fault: bits & 0x0300 != 0,
+                too_hot: bits & 0x0018 != 0,
+                bad_supply: bits & 0x00E0 != 0,
+                current_limited: [bits & 0x0001 != 0, bits & 0x0002 != 0],
+                at_switch: [bits & 0x4000 != 0, bits & 0x8000 != 0],
+            },
+            Self::Newer => Status {
+                emergency_stop: bits & 0x0000_0001 != 0,
+                driver_fault: bits & 0x0000_00C0 != 0,
+                too_hot: bits & 0x0000_0006 != 0,
+                bad_supply: bits & 0x0000_0038 != 0,
+                current_limited: [bits & 0x0001_0000 != 0, bits & 0x0002_0000 != 0],
+                at_switch: [bits & 0x0040_0000 != 0, bits & 0x0080_0000 != 0],
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_profile_needs_a_version_that_is_known() {
+        assert_eq!(Firmware::of("USB Roboclaw 2x30a v4.1.34"), Some(Firmware::Older));
+        assert_eq!(Firmware::of("USB Roboclaw 2x15a v4.2.9"), Some(Firmware::Newer));
+        for unknown in ["", "USB Roboclaw 2x30a", "USB Roboclaw 2x30a v3.1.3", "Roboclaw v40.1.0", "x v5.0.0"]
+        {
+            assert_eq!(Firmware::of(unknown), None, "{unknown}");
+        }
+    }
+
+    #[test]
+    fn the_same_bit_means_another_thing() {
+        assert!(Firmware::Older.status(0x0004).emergency_stop);
+        assert!(!Firmware::Newer.status(0x0004).emergency_stop && Firmware::Newer.status(0x0004).too_hot);
+        assert!(Firmware::Newer.status(0x0001).emergency_stop);
+        assert_eq!(Firmware::Older.status(0x0001).current_limited, [true, false]);
+    }
+
+    #[test]
+    fn the_emergency_stop_latches_by_either_table() {
+        assert_eq!(Firmware::Older.pin_modes(false), [0x01, 0, 0]);
+        assert_eq!(Firmware::Newer.pin_modes(true), [0x81, 0x22, 0x22]);
+    }
+}
