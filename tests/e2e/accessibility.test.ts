@@ -6,7 +6,7 @@ import { Dashboard } from "./support/dashboard";
 import { CovrServer } from "./support/server";
 import { until } from "./support/until";
 
-const VIEWS = ["live", "scenes", "sessions", "settings", "help"] as const;
+const VIEWS = ["live", "scenes", "sessions", "machine", "settings", "help"] as const;
 const SIZES = [
   { name: "laptop", width: 1366, height: 768 },
   { name: "tablet on its side", width: 1180, height: 820 },
@@ -81,7 +81,7 @@ async function opened(server: CovrServer, theme: "dark" | "light", language: "en
 
 async function show(dashboard: Dashboard, view: (typeof VIEWS)[number]): Promise<void> {
   await dashboard.page.getByTestId(`view-${view}`).click();
-  const sign = { live: "arm", scenes: "scenes", sessions: "sessions", settings: "config", help: "help-R1" }[view];
+  const sign = { live: "arm", scenes: "scenes", sessions: "sessions", machine: "machine-axis-x", settings: "config", help: "help-R1" }[view];
   await dashboard.page.getByTestId(sign).waitFor({ timeout: 10_000 });
 }
 

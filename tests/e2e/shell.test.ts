@@ -41,7 +41,7 @@ describe("theme and language", () => {
     const french = new Set(textsOf(fr));
     const onlyEnglish = textsOf(en).filter((text) => !french.has(text));
     expect(onlyEnglish.length).toBeGreaterThan(50);
-    for (const view of ["live", "scenes", "sessions", "settings", "help"] as const) {
+    for (const view of ["live", "scenes", "sessions", "machine", "settings", "help"] as const) {
       await dashboard.page.getByTestId(`view-${view}`).click();
       await dashboard.page.locator("main h1").waitFor({ state: "attached", timeout: 5_000 });
       const shown = await dashboard.page.evaluate(shownTexts);
@@ -57,7 +57,7 @@ describe("theme and language", () => {
 
 describe("the keyboard", () => {
   it("leads everywhere, does nothing while somebody types, and never moves the machine by itself", async () => {
-    for (const [key, view] of [["2", "scenes"], ["3", "sessions"], ["4", "settings"], ["5", "help"], ["1", "live"]] as const) {
+    for (const [key, view] of [["2", "scenes"], ["3", "sessions"], ["4", "machine"], ["5", "settings"], ["6", "help"], ["1", "live"]] as const) {
       await dashboard.page.keyboard.press(key);
       await until(`the view ${view}`, 5_000, async () => (await dashboard.page.getByTestId(`view-${view}`).getAttribute("aria-current")) === "page");
     }

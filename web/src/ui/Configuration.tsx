@@ -1,5 +1,5 @@
 /** The configuration in force: every key with its meaning, its default, what it accepts and who set it. */
-import { createMemo, createResource, createSignal, For, Show, type JSX } from "solid-js";
+import { createMemo, createResource, createSignal, For, Show, untrack, type JSX } from "solid-js";
 import { readConfig } from "../api/http";
 import type { ConfigKey } from "../api/types";
 import { words } from "../i18n";
@@ -7,10 +7,10 @@ import { acceptsOf, meaningOf } from "./configWords";
 import { Said } from "./Said";
 import { troubleOf } from "../lib/trouble";
 
-/** The panel; read when it is opened, and again on request. */
-export function Configuration(): JSX.Element {
+/** The panel; read when it is opened, and again on request. `search` is what is looked for at first. */
+export function Configuration(props: { readonly search?: string }): JSX.Element {
   const [config, { refetch }] = createResource(readConfig);
-  const [wanted, setWanted] = createSignal("");
+  const [wanted, setWanted] = createSignal(untrack(() => props.search ?? ""));
   const [onlyChanged, setOnlyChanged] = createSignal(false);
   const say = () => words().settings.config;
   const read = () => (config.error === undefined ? config.latest : undefined);

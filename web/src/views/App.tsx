@@ -20,6 +20,7 @@ import { LiveView } from "./LiveView";
 import { createRoute } from "./route";
 import { ScenesView } from "./ScenesView";
 import { SessionsView } from "./SessionsView";
+import { MachineView } from "./MachineView";
 import { SettingsView } from "./SettingsView";
 import { createUpload } from "./upload";
 
@@ -90,6 +91,9 @@ export function App(): JSX.Element {
           </Match>
           <Match when={route().view === "sessions"}>
             <SessionsView live={live} />
+          </Match>
+          <Match when={route().view === "machine"}>
+            <MachineView live={live} />
           </Match>
           <Match when={route().view === "settings"}>
             <SettingsView
