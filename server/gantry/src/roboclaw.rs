@@ -10,10 +10,14 @@
 //! owns the port. A board is connected, then identified, then configured, each a type of its own; only a configured one
 //! has a verb that moves. Three dead-men lie inside each other: an order that grows old is a hold, each motion carries the distance
 //! after which the board brakes by itself, and the board's serial timeout stops it when nothing comes at all.
+//!
+//! - [`emulator`]: boards that are not there, for trying this driver and others; it shares no code with it.
+//! - [`settings`]: what a machine is made of.
 
 mod board;
 mod contact;
 mod driver;
+pub mod emulator;
 mod exchange;
 mod figures;
 mod firmware;

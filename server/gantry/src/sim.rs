@@ -15,7 +15,7 @@ pub mod faults;
 mod host;
 mod link;
 pub mod parameters;
-mod plant;
+pub(crate) mod plant;
 
 use covr_engine::frames::{Floor, Planar};
 use covr_engine::machine::{Homing, Limits, MachineReport, Travel};

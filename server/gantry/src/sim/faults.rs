@@ -47,7 +47,7 @@ pub enum LinkFault {
 }
 
 impl Direction {
-    pub(super) const fn sign(self) -> f64 {
+    pub(crate) const fn sign(self) -> f64 {
         match self {
             Self::Positive => 1.0,
             Self::Negative => -1.0,

@@ -222,7 +222,7 @@ impl MachineParameters {
     }
 
     /// The first thing that no machine can have.
-    pub(super) fn check(&self) -> Result<(), ParameterProblem> {
+    pub(crate) fn check(&self) -> Result<(), ParameterProblem> {
         let axis = |a: &AxisParameters, l: &AxisLimits| {
             positive("resistance_ohm", a.motor.resistance_ohm)?;
             positive("inductance_h", a.motor.inductance_h)?;

@@ -7,14 +7,14 @@ use super::parameters::{AxisParameters, MachineParameters};
 
 /// The true state of one axis.
 #[derive(Debug, Clone)]
-pub(super) struct Plant {
+pub(crate) struct Plant {
     position_m: f64,
     speed_mps: f64,
     amps: f64,
     /// Where the encoder believes to be, counted from power-on, m.
     encoded_m: f64,
     /// Force from outside, N.
-    pub(super) push_n: f64,
+    pub(crate) push_n: f64,
     constants: Constants,
 }
 
@@ -36,7 +36,7 @@ struct Constants {
 }
 
 impl Plant {
-    pub(super) fn new(
+    pub(crate) fn new(
         axis: &AxisParameters,
         machine: &MachineParameters,
         (low_m, high_m): (f64, f64),
@@ -64,7 +64,7 @@ impl Plant {
     }
 
     /// One step of [`STEP_SECS`] with `volts` on the motor, or with the bridge open.
-    pub(super) fn step(&mut self, volts: Option<f64>, faults: &AxisFaults) {
+    pub(crate) fn step(&mut self, volts: Option<f64>, faults: &AxisFaults) {
         let c = &self.constants;
         let before = self.speed_mps;
         self.amps = match volts {
@@ -97,20 +97,25 @@ impl Plant {
         self.encoded_m += moved * (1.0 - faults.encoder_slip);
     }
 
-    pub(super) const fn position_m(&self) -> f64 {
+    /// Cut the current above `amps` from now on.
+    pub(crate) const fn limit_current(&mut self, amps: f64) {
+        self.constants.current_limit_amps = amps;
+    }
+
+    pub(crate) const fn position_m(&self) -> f64 {
         self.position_m
     }
 
-    pub(super) const fn speed_mps(&self) -> f64 {
+    pub(crate) const fn speed_mps(&self) -> f64 {
         self.speed_mps
     }
 
-    pub(super) const fn amps(&self) -> f64 {
+    pub(crate) const fn amps(&self) -> f64 {
         self.amps
     }
 
     /// Encoder counts since power-on.
-    pub(super) fn counts(&self) -> i64 {
+    pub(crate) fn counts(&self) -> i64 {
         (self.encoded_m * self.constants.counts_per_m).floor() as i64
     }
 
@@ -129,7 +134,7 @@ impl Plant {
 }
 
 /// The inner step.
-pub(super) const STEP_MICROS: i64 = 500;
+pub(crate) const STEP_MICROS: i64 = 500;
 const STEP_SECS: f64 = STEP_MICROS as f64 * 1e-6;
 /// Friction of a jammed carriage: far above what 7 A can pull, low enough that it stops in a real distance.
 const JAM_N: f64 = 2_000.0;
