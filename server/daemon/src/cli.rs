@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::cert_command::CertCommand;
 use crate::config::LogFormat;
+use crate::emulate::EmulateCommand;
 use crate::evaluate::Evaluate;
 use crate::explain::Explain;
 use crate::fit::Fit;
@@ -46,6 +47,8 @@ pub enum Command {
     Token(TokenCommand),
     /// Make a local authority and a certificate for TLS.
     Cert(CertCommand),
+    /// Emulate hardware, for trying a driver without any.
+    Emulate(EmulateCommand),
     /// Ask a running server whether it is ready; exit code 2 if it is not.
     Health(Health),
     /// Print every configuration key with its default and its meaning.

@@ -14,6 +14,7 @@ pub mod clients;
 pub mod clock;
 pub mod config;
 pub mod control;
+pub mod emulate;
 pub mod evaluate;
 pub mod explain;
 pub mod fit;

@@ -11,7 +11,7 @@ use covr_server::config::{self, Config};
 use covr_server::prove::Prove;
 use covr_server::serve::{Server, stop_at_signal, stop_signal, told_by_signal};
 use covr_server::visitor::credentials::Credentials;
-use covr_server::{cert_command, evaluate, explain, fit, logs, prove, token_command, visitor};
+use covr_server::{cert_command, emulate, evaluate, explain, fit, logs, prove, token_command, visitor};
 use covr_wire::scene::parse_scene;
 
 fn main() -> ExitCode {
@@ -28,6 +28,7 @@ fn main() -> ExitCode {
             .and_then(|runtime| runtime.block_on(token_command::run(options)))
             .and_then(|words| print(&words)),
         Command::Cert(options) => cert_command::run(&options).and_then(|words| print(&words)),
+        Command::Emulate(options) => emulate::run(&options),
         Command::Health(options) => health(&options),
         Command::Config => print(&config::reference(&Config::default())),
     };

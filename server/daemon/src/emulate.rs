@@ -1,0 +1,33 @@
+//! `covr emulate roboclaw`: boards that are not there, on a pseudo-terminal.
+//!
+//! The boards are [`covr_gantry::roboclaw::emulator`]; here is their clock, their port and the orders on standard input.
+
+mod options;
+mod port;
+mod session;
+
+use clap::{Args, Subcommand};
+
+pub use options::Roboclaw;
+
+/// Emulate hardware, for trying a driver without any.
+#[derive(Debug, Clone, Args)]
+pub struct EmulateCommand {
+    /// What to emulate.
+    #[command(subcommand)]
+    pub what: Emulated,
+}
+
+/// What can be emulated.
+#[derive(Debug, Clone, Subcommand)]
+pub enum Emulated {
+    /// RoboClaw boards in front of the simulated motors; prints `roboclaw emulator on PATH` and runs until SIGINT or SIGTERM.
+    Roboclaw(Box<Roboclaw>),
+}
+
+/// Until it is told to end by a signal.
+pub fn run(command: &EmulateCommand) -> anyhow::Result<()> {
+    match &command.what {
+        Emulated::Roboclaw(options) => session::run(options),
+    }
+}
