@@ -26,6 +26,9 @@ mod link;
 mod machine;
 mod packet;
 mod port;
+mod session;
 pub mod settings;
+#[cfg(test)]
+mod tests;
 
 pub use machine::RoboClaw;

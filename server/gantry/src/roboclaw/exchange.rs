@@ -141,7 +141,7 @@ impl<P: Port> Line<P> {
     fn receive(&mut self, into: &mut [u8], deadline: Instant) -> Result<usize, Lost> {
         loop {
             let count = self.port.receive(into, deadline)?;
-            if count > 0 || Instant::now() >= deadline {
+            if count > 0 || self.port.now() >= deadline {
                 return Ok(count);
             }
         }
@@ -149,12 +149,12 @@ impl<P: Port> Line<P> {
 
     /// Wait until nothing has come for longer than the board keeps half a packet.
     fn clean(&mut self) -> Result<(), Lost> {
-        let give_up = Instant::now() + LONGEST_CLEANING;
-        let mut quiet_at = Instant::now() + QUIET;
+        let give_up = self.port.now() + LONGEST_CLEANING;
+        let mut quiet_at = self.port.now() + QUIET;
         let mut rubbish = [0; 256];
-        while Instant::now() < quiet_at && Instant::now() < give_up {
+        while self.port.now() < quiet_at && self.port.now() < give_up {
             if self.port.receive(&mut rubbish, quiet_at)? > 0 {
-                quiet_at = Instant::now() + QUIET;
+                quiet_at = self.port.now() + QUIET;
             }
         }
         self.is_clean = true;
@@ -162,7 +162,7 @@ impl<P: Port> Line<P> {
     }
 
     fn deadline(&self, bytes: usize) -> Instant {
-        Instant::now() + self.byte_time * bytes as u32 + TURNAROUND
+        self.port.now() + self.byte_time * bytes as u32 + TURNAROUND
     }
 
     fn judge(&mut self, command: u8, is_good: bool) -> Result<(), Lost> {

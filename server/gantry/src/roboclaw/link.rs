@@ -6,15 +6,15 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::time::{Duration, Instant};
 
 use arc_swap::ArcSwap;
-use covr_engine::frames::Floor;
 use covr_engine::machine::{MachineReport, Trouble};
 use covr_engine::time::Time;
 
-use super::board::{Configured, Connected, Refused};
-use super::driver::{Driver, Order, Tell};
+use super::board::Refused;
+use super::driver::Order;
 use super::exchange::Lost;
 use super::figures::Figures;
 use super::port::Port;
+use super::session::Session;
 use super::settings::Settings;
 use crate::contract::Health;
 
@@ -77,23 +77,20 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
     /// From opening the port until the boards are lost; well ended only when told to quit.
     fn session(&mut self, figures: &mut Figures) -> Result<(), Ended> {
         let port = (self.open)().map_err(Ended::NoPort)?;
-        let identified = Connected::new(port, &self.settings).identify()?;
-        let mut board = identified.configure(&self.settings)?;
-        figures.found(board.firmware());
-        let stood_at: Floor = self.shared.state.load().report.position;
-        let mut driver = Driver::new(&self.settings, stood_at);
-        let mut pushes_gently = false;
+        let stood_at = self.shared.state.load().report.position;
+        let mut boards = Session::open(port, &self.settings, stood_at)?;
+        figures.found(boards.firmware());
         let mut good_at = Instant::now();
         let mut cycle = 0_u64;
         loop {
             let is_last = self.shared.quit.load(Ordering::Acquire);
             let order = self.shared.order.load_full();
             let begun = Instant::now();
-            match self.cycle(&mut board, &mut driver, &order, &mut pushes_gently) {
+            match boards.cycle(&order, &self.clock) {
                 Ok(taken) => {
                     good_at = Instant::now();
-                    figures.cycle(begun, good_at, board.tally());
-                    self.publish(&driver, taken.then_some(order.vetted_at), figures);
+                    figures.cycle(begun, good_at, boards.tally());
+                    self.publish(boards.report(), taken.then_some(order.vetted_at), figures);
                     self.say_begun();
                 }
                 Err(Refused::Lost(last @ Lost::Port(_))) => {
@@ -109,55 +106,15 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
                 return Ok(());
             }
             cycle += 1;
-            if cycle % SLOW_EVERY == 0 {
-                slow_look(&mut board, cycle / SLOW_EVERY, figures)?;
+            if cycle.is_multiple_of(SLOW_EVERY) {
+                slow_look(&mut boards, cycle / SLOW_EVERY, figures)?;
             }
             self.wait_for_news(&order, begun);
         }
     }
 
-    /// Tell the boards what the order means, then look. Whether what they took is the order.
-    fn cycle<Q: Port>(
-        &self,
-        board: &mut Configured<Q>,
-        driver: &mut Driver,
-        order: &Order,
-        pushes_gently: &mut bool,
-    ) -> Result<bool, Refused> {
-        let mut taken = true;
-        if driver.report().answered_at != Time::ZERO {
-            let tell = driver.next((self.clock)(), order, self.settings.period);
-            if *pushes_gently != driver.pushes_gently() {
-                let settings = &self.settings;
-                let amps = [settings.current_limit_amps, settings.homing_current_amps];
-                board.limit_current(amps[usize::from(!*pushes_gently)])?;
-                *pushes_gently = driver.pushes_gently();
-            }
-            let told = match tell {
-                Tell::Release => board.release(),
-                Tell::Brake(braking) => board.brake(braking),
-                Tell::Go(motion) => board.go(&motion),
-            };
-            match told {
-                Err(port @ Lost::Port(_)) => return Err(port.into()),
-                // The look comes all the same: a lost command is followed by the next.
-                Err(_) => taken = false,
-                Ok(()) => {}
-            }
-        } else {
-            taken = false;
-        }
-        let asked_at = (self.clock)();
-        let look = board.look()?;
-        let answered_at = (self.clock)();
-        let at = Time::from_micros((asked_at.micros() + answered_at.micros()) / 2);
-        driver.see(&look, at);
-        Ok(taken)
-    }
-
-    fn publish(&self, driver: &Driver, taken: Option<Time>, figures: &mut Figures) {
+    fn publish(&self, report: MachineReport, taken: Option<Time>, figures: &mut Figures) {
         let before = self.shared.state.load();
-        let report = driver.report();
         let state = State {
             report,
             answers: true,
@@ -208,7 +165,8 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
 }
 
 /// What changes slowly, one thing at a time.
-fn slow_look<P: Port>(board: &mut Configured<P>, turn: u64, figures: &mut Figures) -> Result<(), Ended> {
+fn slow_look<P: Port>(boards: &mut Session<P>, turn: u64, figures: &mut Figures) -> Result<(), Ended> {
+    let board = boards.board();
     // A lost answer here is nothing to act on: the next turn asks again, and the fast looks watch the link.
     match turn % 3 {
         0 => figures.volts(board.main_volts().ok()),

@@ -8,6 +8,11 @@ use serial2::SerialPort;
 
 /// Bytes out, bytes in until a deadline.
 pub trait Port: Send {
+    /// The time that its deadlines are in.
+    fn now(&self) -> Instant {
+        Instant::now()
+    }
+
     /// Send all of it.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 

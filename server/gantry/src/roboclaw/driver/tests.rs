@@ -97,8 +97,8 @@ impl Bench {
             Tell::Release | Tell::Brake(_) => [0; 2],
             Tell::Go(motion) => motion.speed,
         };
-        for i in 0..2 {
-            let mps = f64::from(counts[i]) / self.counts(i, 1.0);
+        for (i, counts) in counts.into_iter().enumerate() {
+            let mps = f64::from(counts) / self.counts(i, 1.0);
             let next = (self.place_m[i] + mps * PERIOD.secs()).max(STOP_M);
             self.speed_mps[i] = (next - self.place_m[i]) / PERIOD.secs();
             self.place_m[i] = next;

@@ -1,0 +1,99 @@
+//! Each switch of the emulator: what the driver makes of it.
+
+use covr_engine::machine::Trouble;
+
+use super::*;
+
+/// Cycle under a setpoint that stays, for so long; how many cycles were lost.
+fn stand(bench: &mut Bench, secs: f64) -> (u32, u32) {
+    let at = bench.session.report().position;
+    let begun = bench.port.time();
+    let (mut whole, mut lost) = (0, 0);
+    while (bench.port.time() - begun).secs() < secs {
+        match bench.cycle(setpoint(at, Planar::ZERO, Planar::ZERO)) {
+            Ok(true) => whole += 1,
+            Ok(false) | Err(Refused::Lost(_)) => lost += 1,
+            Err(other) => panic!("{other}"),
+        }
+    }
+    (whole, lost)
+}
+
+#[test]
+fn lost_bytes_flipped_bits_gaps_and_missing_answers_cost_cycles_and_move_nothing() {
+    for (order, mended) in [
+        ("lose 0.002", "lose 0"),
+        ("flip 0.002", "flip 0"),
+        ("missing 0.02", "missing 0"),
+        ("gap 0.02 40", "gap 0 0"),
+        ("late 0.02 40", "late 0 0"),
+    ] {
+        let mut bench = Bench::homed(USUAL);
+        let (at, _) = bench.truth();
+        bench.give(order);
+        let (whole, lost) = stand(&mut bench, 8.0);
+        println!("{order}: {whole} whole cycles, {lost} lost, {:?}", bench.session.tally());
+        assert!(whole > 50 && bench.session.tally().lost > 0, "{order}: {whole} whole, {lost} lost");
+        assert!(bench.truth().0.distance_m(at) < 0.005, "{order}");
+        assert_eq!(bench.session.report().homing, Homing::Homed, "{order}");
+        bench.give(mended);
+        let (_, lost) = stand(&mut bench, 2.0);
+        assert!(lost <= 1, "{order}: the line is well again, and {lost} cycles were lost");
+    }
+}
+
+#[test]
+fn an_unknown_firmware_is_refused_by_its_words() {
+    let kind = Kind { firmware: "unknown", ..USUAL };
+    let port = Bench::world(kind, Floor::new(1.0, 1.0));
+    match Bench::try_new(kind, &port) {
+        Err(Refused::UnknownFirmware { address: 0x80, found }) => assert!(!found.is_empty()),
+        Err(other) => panic!("{other}"),
+        Ok(_) => panic!("it was taken"),
+    }
+}
+
+#[test]
+fn the_emergency_stop_pin_is_told_within_two_cycles_on_both_firmwares() {
+    for firmware in ["older", "newer"] {
+        let mut bench = Bench::homed(Kind { firmware, ..USUAL });
+        bench.give("press");
+        let at = bench.session.report().position;
+        for _ in 0..2 {
+            bench.cycle(setpoint(at, Planar::ZERO, Planar::ZERO)).unwrap();
+        }
+        assert_eq!(bench.session.report().trouble, Some(Trouble::EmergencyStop), "{firmware}");
+    }
+}
+
+#[test]
+fn a_jammed_axis_shows_its_current() {
+    let mut bench = Bench::homed(USUAL);
+    bench.give("jam x on");
+    let at = bench.session.report().position;
+    let mut most = 0.0_f64;
+    for _ in 0..150 {
+        bench.cycle(setpoint(at + Planar::new(0.5, 0.0), Planar::ZERO, Planar::ZERO)).unwrap();
+        most = most.max(bench.session.report().current_amps[0]);
+    }
+    assert!(most > 5.0, "{most} A");
+}
+
+#[test]
+fn a_brown_out_loses_the_home_and_never_keeps_the_old_settings() {
+    let mut bench = Bench::homed(USUAL);
+    bench.give("brown-out 200");
+    let at = bench.session.report().position;
+    let begun = bench.port.time();
+    while (bench.port.time() - begun).secs() < 4.0 {
+        // What is lost while it is dark is what the link thread opens the port anew for.
+        let _ = bench.cycle(setpoint(at, Planar::ZERO, Planar::ZERO));
+    }
+    let keeps = bench.session.board().keeps_its_timeout();
+    let lost_home = bench.session.report().homing == Homing::NotHomed;
+    assert!(
+        lost_home || matches!(keeps, Ok(false)),
+        "homing {:?}, keeps {keeps:?}",
+        bench.session.report().homing
+    );
+}
