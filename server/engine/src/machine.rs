@@ -86,6 +86,8 @@ pub enum Trouble {
     UnknownFirmware,
     /// Its controller does not keep a setting.
     NotConfigured,
+    /// Settings of its controller come into force when its power is switched off and on.
+    SwitchOffAndOn,
     /// Its controller has restarted, and forgotten its settings.
     Restarted,
     /// The wired emergency stop is active at the controller.
@@ -100,11 +102,12 @@ pub enum Trouble {
 
 impl Trouble {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::NoPort,
         Self::NoAnswer,
         Self::UnknownFirmware,
         Self::NotConfigured,
+        Self::SwitchOffAndOn,
         Self::Restarted,
         Self::EmergencyStop,
         Self::DriverFault,
@@ -119,6 +122,7 @@ impl Trouble {
             Self::NoAnswer => "no_answer",
             Self::UnknownFirmware => "unknown_firmware",
             Self::NotConfigured => "not_configured",
+            Self::SwitchOffAndOn => "switch_off_and_on",
             Self::Restarted => "restarted",
             Self::EmergencyStop => "emergency_stop",
             Self::DriverFault => "driver_fault",

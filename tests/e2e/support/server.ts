@@ -16,6 +16,7 @@ export class CovrServer {
   readonly #config: string;
   #child: ChildProcess | null = null;
   readonly #visitors: ChildProcess[] = [];
+  #boards: ChildProcess | null = null;
   #log = "";
 
   private constructor(folder: string, port: number, config: string) {
@@ -29,7 +30,7 @@ export class CovrServer {
     const folder = await mkdtemp(join(tmpdir(), "covr-e2e-"));
     const server = new CovrServer(folder, await freePort(), join(folder, "covr.toml"));
     onTestFinished(() => server.#end());
-    await writeFile(server.#config, config);
+    await writeFile(server.#config, await server.#onMachine(config));
     await server.run();
     return server;
   }
@@ -111,9 +112,22 @@ export class CovrServer {
     return id;
   }
 
+  /** The configuration on the machine that is asked for: with COVR_MACHINE=roboclaw emulated boards on a pseudo-terminal, whatever is tested. */
+  async #onMachine(config: string): Promise<string> {
+    if (process.env["COVR_MACHINE"] !== "roboclaw") return config;
+    const port = join(this.folder, "boards");
+    const travel = /travel_m = \[([^\]]*)\]/.exec(config)?.[1] ?? "0, 0, 4, 4";
+    this.#boards = this.#spawn(["emulate", "roboclaw", "--tuned", "--baud", "460800", "--start", "0.3,0.3", "--end-switches", "none", "--travel", travel.replaceAll(" ", ""), "--link", port]);
+    await until("the boards are there", 20_000, () => (this.#log.includes("roboclaw emulator on") ? true : null));
+    const kind = 'kind = "roboclaw"\n';
+    const machine = config.includes("[machine]\n") ? config.replace("[machine]\n", `[machine]\n${kind}`) : `${config}\n[machine]\n${kind}`;
+    return `${machine}\n[machine.roboclaw]\nport = "${port}"\ncurrent_limit_amps = 7.0\nhome_by = "stops"\nswitch_outside_m = 0.03\n`;
+  }
+
   async #end(): Promise<void> {
     for (const visitor of this.#visitors) await ended(visitor, "SIGKILL");
     if (this.#child !== null) await ended(this.#child, "SIGTERM");
+    if (this.#boards !== null) await ended(this.#boards, "SIGTERM");
     await rm(this.folder, { recursive: true, force: true });
   }
 

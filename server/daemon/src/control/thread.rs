@@ -87,6 +87,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
         let why = real_time::ask(priority);
         run.control_loop.scheduling = why.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         run.control_loop.scheduling_why = why;
+        run.drive.wait_for_an_answer(setup.period);
         tracing::info!(scheduling = %run.control_loop.scheduling, rate_hz, "control loop runs");
         let end = match catch_unwind(AssertUnwindSafe(|| run.until_quit())) {
             Ok(()) => Ended::AsAsked,
@@ -232,6 +233,16 @@ impl Run {
 }
 
 impl Drive {
+    /// Locking memory holds up every thread of the process, a machine's link too: its first answer since then comes before the first step,
+    /// or the first step would find a machine that is silent. One that stays silent is R8's.
+    fn wait_for_an_answer(&mut self, period: Duration) {
+        let since = self.clock.now();
+        let give_up = Instant::now() + LONGEST_FIRST_ANSWER;
+        while self.gantry.read(self.clock.now()).report.answered_at < since && Instant::now() < give_up {
+            std::thread::sleep(period);
+        }
+    }
+
     fn read(&mut self, engine: &mut Engine, now: Time) {
         let reading = self.gantry.read(now);
         engine.observe(now, Observation::Machine(reading.report));
@@ -272,5 +283,7 @@ fn words_of(panic: &(dyn std::any::Any + Send)) -> String {
         .unwrap_or_else(|| "a panic without words".into())
 }
 
+/// The longest wait for a machine's first answer.
+const LONGEST_FIRST_ANSWER: Duration = Duration::from_millis(500);
 /// Facts come with each person's coming and going, never with poses.
 const FACT_QUEUE: usize = 1_024;

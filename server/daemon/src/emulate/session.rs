@@ -14,6 +14,8 @@ use nix::sys::signalfd::{SfdFlags, SignalFd};
 use nix::sys::time::TimeSpec;
 use serde_json::json;
 
+use crate::control::real_time;
+
 use super::options::Roboclaw;
 use super::port::Port;
 
@@ -25,6 +27,9 @@ pub fn run(options: &Roboclaw) -> anyhow::Result<()> {
     ends.thread_block()?;
     let signals = SignalFd::with_flags(&ends, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)?;
     let mut session = Session::new(options)?;
+    // A board has a processor of its own.
+    let came_of_it = real_time::ask(Some(PRIORITY));
+    tracing::debug!(?came_of_it, "the boards' scheduling");
     while signals.read_signal()?.is_none() {
         session.wait(&signals)?;
         session.carry()?;
@@ -197,6 +202,8 @@ fn say(line: &str) -> anyhow::Result<()> {
 }
 
 /// The machine is brought up to date at least so often.
+/// Above the server's control thread.
+const PRIORITY: u8 = 70;
 const LONGEST_WAIT: Duration = Duration::from_millis(20);
 /// Nothing tells the holder of a pseudo-terminal that somebody has opened it, so it is looked at.
 const LOOK_FOR_OPENER_EVERY: Duration = Duration::from_millis(1);

@@ -20,6 +20,11 @@ pub enum Refused {
     /// Two boards with different tables.
     #[error("the boards have different firmwares: {0:?} and {1:?}")]
     DifferentFirmwares(String, String),
+    /// Its switches' pins had other functions; the new ones are stored and come into force with its next start.
+    #[error(
+        "the board at address {address:#04x} had other functions on S4 and S5: the new ones are stored; switch its power off and on"
+    )]
+    SwitchOffAndOn { address: u8 },
     /// It does not keep what it was told.
     #[error("the board at address {address:#04x} does not keep its {what}: told {told}, it says {says}")]
     NotKept { address: u8, what: &'static str, told: String, says: String },
@@ -115,13 +120,22 @@ impl<P: Port> Identified<P> {
         for (board, address) in self.boards.addresses().into_iter().enumerate() {
             let to = |command| Packet::to(address, command);
             self.line.tell_again(&to(Command::DutyBoth).word(0).word(0).sealed())?;
+            for set in [Command::SetEncoderM1, Command::SetEncoderM2] {
+                self.line.tell_again(&to(set).signed(COUNTS_AT_FIRST).sealed())?;
+            }
             self.line.tell_again(&to(Command::SetSerialTimeout).byte(tenths).sealed())?;
             let says = self.line.ask::<1>(to(Command::ReadSerialTimeout).question())?;
             kept(address, "serial timeout", [tenths], says)?;
             let modes = self.firmware.pin_modes(settings.home_by == HomeBy::Switches);
             let [s3, s4, s5] = modes;
+            let [_, before @ ..] = self.line.ask::<3>(to(Command::ReadPinModes).question())?;
             self.line.tell_again(&to(Command::SetPinModes).byte(s3).byte(s4).byte(s5).sealed())?;
             kept(address, "pin modes", modes, self.line.ask::<3>(to(Command::ReadPinModes).question())?)?;
+            if before != [s4, s5] {
+                // Firmware 4.1.34 takes up a new function of S4 or S5 only when it starts with it stored (maker's support).
+                self.line.tell_again(&to(Command::SaveSettings).long(SAVE_KEY).sealed())?;
+                return Err(Refused::SwitchOffAndOn { address });
+            }
             let axes = match self.boards {
                 Boards::One(_) => &settings.axes[..],
                 Boards::Two(_) => &settings.axes[board..=board],
@@ -249,8 +263,10 @@ impl<P: Port> Configured<P> {
         match self.boards {
             Boards::One(address) => {
                 let counts = self.line.ask::<8>(Packet::to(address, Command::ReadEncoders).question())?;
-                let speeds =
-                    [self.speed(address, Command::ReadSpeedM1)?, self.speed(address, Command::ReadSpeedM2)?];
+                let speeds = [
+                    self.speed(address, Command::ReadRawSpeedM1)?,
+                    self.speed(address, Command::ReadRawSpeedM2)?,
+                ];
                 let amps = self.line.ask::<4>(Packet::to(address, Command::ReadCurrents).question())?;
                 let status = self.status(address)?;
                 let counts = [Reply(&counts).signed(0), Reply(&counts).signed(4)];
@@ -263,7 +279,7 @@ impl<P: Port> Configured<P> {
                     let counts =
                         self.line.ask::<5>(Packet::to(address, Command::ReadEncoderM1).question())?;
                     look.counts[i] = Reply(&counts).signed(0);
-                    look.speeds[i] = self.speed(address, Command::ReadSpeedM1)?;
+                    look.speeds[i] = self.speed(address, Command::ReadRawSpeedM1)?;
                     let amps = self.line.ask::<4>(Packet::to(address, Command::ReadCurrents).question())?;
                     look.amps[i] = amperes(&amps, 0);
                     look.status.take_in(self.status(address)?, i);
@@ -300,7 +316,7 @@ impl<P: Port> Configured<P> {
         Ok(Reply(&answer).word(0))
     }
 
-    /// Counts a second. The manual gives the direction in a byte of its own and does not say whether the number is signed too.
+    /// Counts a second over the last 300th of a second: what command 18 answers is filtered, and 30 ms late. The manual gives the direction in a byte of its own and does not say whether the number is signed too.
     fn speed(&mut self, address: u8, command: Command) -> Result<i32, Lost> {
         let answer = self.line.ask::<5>(Packet::to(address, command).question())?;
         let speed = Reply(&answer).signed(0);
@@ -345,6 +361,11 @@ fn amperes(reply: &[u8], at: usize) -> f64 {
     f64::from((Reply(reply).word(at) as i16).unsigned_abs()) * CURRENT_STEP_AMPS
 }
 
+/// Counting begins so far from 0 that no column gets there: a board that restarts counts from 0, which is then a jump whatever else it
+/// has kept.
+const COUNTS_AT_FIRST: i32 = 0x2000_0000;
+/// What command 94 wants to be sent with (the maker's own library; the manual leaves it out).
+const SAVE_KEY: u32 = 0xE22E_AB7A;
 /// Gains are numbers with 16 bits behind the point.
 const FIXED_POINT: f64 = 65_536.0;
 const CURRENT_STEP_AMPS: f64 = 0.01;

@@ -1,15 +1,16 @@
 //! Firmware profiles: what differs between the maker's firmwares and could hurt somebody if it were guessed.
 //!
-//! Two manuals are known. In the older one (firmware 4.1) a status has 16 bits with the emergency stop at 0x0004, and pin mode 1 is the
-//! *latching* emergency stop. In the newer one a status has 32 bits with the emergency stop at 0x000001, and pin mode 1 is the one
-//! that does *not* latch. A board of any other firmware is not driven.
+//! Two manuals are known. In the older one a status has 16 bits with the emergency stop at 0x0004, and pin mode 1 is the *latching*
+//! emergency stop. In the newer one a status has 32 bits with the emergency stop at 0x000001, and pin mode 1 is the one that does *not*
+//! latch. The status grew in 4.1.29 (maker's support); that the pin modes changed with it is an inference. A board of any other
+//! firmware is not driven.
 
 /// A firmware whose tables are known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Firmware {
-    /// 4.1: status of 16 bits.
+    /// 4.1 before 4.1.29: status of 16 bits.
     Older,
-    /// 4.2 and 4.3: status of 32 bits.
+    /// 4.1.29 and later, 4.2, 4.3: status of 32 bits.
     Newer,
 }
 
@@ -34,10 +35,10 @@ impl Firmware {
     /// The profile of a version text such as `USB Roboclaw 2x30a v4.1.34`; none when it is not one of the known.
     pub fn of(text: &str) -> Option<Self> {
         let version = text.rsplit_once(" v")?.1;
-        let mut parts = version.split('.');
-        match (parts.next()?, parts.next()?) {
-            ("4", "1") => Some(Self::Older),
-            ("4", "2" | "3") => Some(Self::Newer),
+        let parts: Vec<u32> = version.split('.').map(str::parse).collect::<Result<_, _>>().ok()?;
+        match parts[..] {
+            [4, 1, patch] if patch < LONG_STATUS_SINCE => Some(Self::Older),
+            [4, 1..=3, _] => Some(Self::Newer),
             _ => None,
         }
     }
@@ -45,8 +46,8 @@ impl Firmware {
     /// The name on every surface.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Older => "4.1",
-            Self::Newer => "4.2 and 4.3",
+            Self::Older => "4.1 before 4.1.29",
+            Self::Newer => "4.1.29 to 4.3",
         }
     }
 
@@ -92,16 +93,28 @@ impl Firmware {
     }
 }
 
+/// The last part of the first 4.1 whose status has 32 bits.
+const LONG_STATUS_SINCE: u32 = 29;
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_profile_needs_a_version_that_is_known() {
-        assert_eq!(Firmware::of("USB Roboclaw 2x30a v4.1.34"), Some(Firmware::Older));
+        assert_eq!(Firmware::of("USB Roboclaw 2x7a v4.1.28"), Some(Firmware::Older));
+        assert_eq!(Firmware::of("USB Roboclaw 2x7a v4.1.29"), Some(Firmware::Newer));
+        assert_eq!(Firmware::of("USB Roboclaw 2x30a v4.1.34"), Some(Firmware::Newer));
         assert_eq!(Firmware::of("USB Roboclaw 2x15a v4.2.9"), Some(Firmware::Newer));
-        for unknown in ["", "USB Roboclaw 2x30a", "USB Roboclaw 2x30a v3.1.3", "Roboclaw v40.1.0", "x v5.0.0"]
-        {
+        for unknown in [
+            "",
+            "USB Roboclaw 2x30a",
+            "USB Roboclaw 2x30a v3.1.3",
+            "Roboclaw v40.1.0",
+            "x v5.0.0",
+            "x v4.1",
+            "x v4.1.x",
+        ] {
             assert_eq!(Firmware::of(unknown), None, "{unknown}");
         }
     }

@@ -26,7 +26,7 @@ pub struct Shared {
     pub state: ArcSwap<State>,
     /// The thread is to end after one more order.
     pub quit: AtomicBool,
-    /// Whether the first try to reach the boards is over, for whoever starts the machine.
+    /// Whether the boards were reached or cannot be, for whoever starts the machine.
     pub begun: (Mutex<bool>, Condvar),
 }
 
@@ -69,7 +69,10 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
         while !self.shared.quit.load(Ordering::Acquire) {
             let Err(why) = self.session(&mut figures) else { return };
             self.say_lost(&why, &mut figures);
-            self.say_begun();
+            // Boards that do not answer yet may still be starting; whatever else is wrong stays so.
+            if !matches!(why, Ended::Refused(Refused::Lost(_)) | Ended::Silent { .. }) {
+                self.say_begun();
+            }
             std::thread::park_timeout(RETRY);
         }
     }
@@ -132,6 +135,7 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
                 Trouble::UnknownFirmware
             }
             Ended::Refused(Refused::NotKept { .. }) => Trouble::NotConfigured,
+            Ended::Refused(Refused::SwitchOffAndOn { .. }) => Trouble::SwitchOffAndOn,
             Ended::Restarted => Trouble::Restarted,
         };
         figures.ended(why.to_string());

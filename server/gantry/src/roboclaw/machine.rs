@@ -26,7 +26,7 @@ pub struct RoboClaw {
 }
 
 impl RoboClaw {
-    /// Start its link thread, and wait until it has reached the boards or failed to. A machine that is not there yet is one that does
+    /// Start its link thread, and wait a little until it has reached the boards. A machine that is not there yet is one that does
     /// not answer: it is tried again for as long as it takes.
     ///
     /// `clock` tells the server's time; `on_thread` is the first thing that the thread does, such as asking for its priority.

@@ -146,7 +146,19 @@ impl Bench {
         // A board takes a moment to start.
         port.with(|world| world.emulator.poll(world.now));
         port.wait(Span::from_secs(2.0));
+        if matches!(Self::try_new(kind, &port), Err(Refused::SwitchOffAndOn { .. })) {
+            Self::switch_off_and_on(&port);
+            // Of two boards the second is configured when the first is through.
+            if matches!(Self::try_new(kind, &port), Err(Refused::SwitchOffAndOn { .. })) {
+                Self::switch_off_and_on(&port);
+            }
+        }
         port
+    }
+
+    fn switch_off_and_on(port: &VirtualPort) {
+        port.with(|world| world.emulator.give(world.now, "brown-out 200".parse().unwrap()));
+        port.wait(Span::from_secs(2.0));
     }
 
     fn try_new(kind: Kind, port: &VirtualPort) -> Result<Self, Refused> {

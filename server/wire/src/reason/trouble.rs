@@ -19,6 +19,8 @@ pub enum MachineTrouble {
     UnknownFirmware,
     /// Its controller does not keep a setting.
     NotConfigured,
+    /// Settings of its controller come into force when its power is switched off and on.
+    SwitchOffAndOn,
     /// Its controller has restarted, and forgotten its settings.
     Restarted,
     /// The wired emergency stop is active at the controller.
@@ -38,6 +40,7 @@ impl From<Engine> for MachineTrouble {
             Engine::NoAnswer => Self::NoAnswer,
             Engine::UnknownFirmware => Self::UnknownFirmware,
             Engine::NotConfigured => Self::NotConfigured,
+            Engine::SwitchOffAndOn => Self::SwitchOffAndOn,
             Engine::Restarted => Self::Restarted,
             Engine::EmergencyStop => Self::EmergencyStop,
             Engine::DriverFault => Self::DriverFault,
@@ -55,6 +58,9 @@ impl fmt::Display for MachineTrouble {
             Self::NoAnswer => "the motor controller does not answer",
             Self::UnknownFirmware => "the motor controller has a firmware that is not known here",
             Self::NotConfigured => "the motor controller does not keep a setting",
+            Self::SwitchOffAndOn => {
+                "settings of the motor controller come into force when its power is switched off and on"
+            }
             Self::Restarted => "the motor controller has restarted and forgotten its settings",
             Self::EmergencyStop => "the wired emergency stop is active",
             Self::DriverFault => "a bridge of the motor controller is broken",

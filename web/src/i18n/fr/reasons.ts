@@ -8,6 +8,7 @@ export const troubles: Record<MachineTrouble, string> = {
   no_answer: "le contrôleur de moteurs ne répond pas",
   unknown_firmware: "le micrologiciel du contrôleur de moteurs n’est pas connu ici",
   not_configured: "le contrôleur de moteurs ne garde pas un réglage",
+  switch_off_and_on: "des réglages du contrôleur de moteurs prennent effet quand son alimentation est coupée puis remise",
   restarted: "le contrôleur de moteurs a redémarré et oublié ses réglages",
   emergency_stop: "l’arrêt d’urgence câblé est actif",
   driver_fault: "un pont du contrôleur de moteurs est défectueux",

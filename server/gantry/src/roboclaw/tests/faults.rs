@@ -80,7 +80,7 @@ fn a_jammed_axis_shows_its_current() {
 }
 
 #[test]
-fn a_brown_out_loses_the_home_and_never_keeps_the_old_settings() {
+fn a_brown_out_loses_the_home_however_much_the_board_has_kept() {
     let mut bench = Bench::homed(USUAL);
     bench.give("brown-out 200");
     let at = bench.session.report().position;
@@ -89,11 +89,20 @@ fn a_brown_out_loses_the_home_and_never_keeps_the_old_settings() {
         // What is lost while it is dark is what the link thread opens the port anew for.
         let _ = bench.cycle(setpoint(at, Planar::ZERO, Planar::ZERO));
     }
-    let keeps = bench.session.board().keeps_its_timeout();
-    let lost_home = bench.session.report().homing == Homing::NotHomed;
-    assert!(
-        lost_home || matches!(keeps, Ok(false)),
-        "homing {:?}, keeps {keeps:?}",
-        bench.session.report().homing
-    );
+    assert_eq!(bench.session.report().homing, Homing::NotHomed);
+}
+
+#[test]
+fn a_board_whose_switches_were_not_set_up_is_driven_only_after_it_was_off() {
+    let machine = MachineParameters::paper(travel());
+    let setup = Setup { baud: 460_800, firmware: "4.1.34".parse().unwrap(), ..Setup::paper(machine) };
+    let emulator = Emulator::new(setup).unwrap();
+    let world = World { emulator, now: Time::from_micros(1_000), begun: Instant::now() };
+    let port = VirtualPort(Arc::new(Mutex::new(world)));
+    port.with(|world| world.emulator.poll(world.now));
+    port.wait(Span::from_secs(2.0));
+    assert!(matches!(Bench::try_new(USUAL, &port), Err(Refused::SwitchOffAndOn { address: 0x80 })));
+    Bench::switch_off_and_on(&port);
+    let mut bench = Bench::try_new(USUAL, &port).unwrap();
+    assert_eq!(bench.home(), Homing::Homed);
 }
