@@ -9,6 +9,7 @@ use covr_gantry::roboclaw::emulator::Emulator;
 use covr_gantry::roboclaw::emulator::orders::{Axis, Order};
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, ppoll};
+use nix::sys::prctl::set_timerslack;
 use nix::sys::signal::{SigSet, Signal};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
 use nix::sys::time::TimeSpec;
@@ -26,6 +27,8 @@ pub fn run(options: &Roboclaw) -> anyhow::Result<()> {
     ends.add(Signal::SIGTERM);
     ends.thread_block()?;
     let signals = SignalFd::with_flags(&ends, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)?;
+    // The kernel's usual 50 microseconds would be half a byte at 115200 baud.
+    set_timerslack(TIMER_SLACK_NANOS)?;
     let mut session = Session::new(options)?;
     // A board has a processor of its own.
     let came_of_it = real_time::ask(Some(PRIORITY));
@@ -207,7 +210,8 @@ const PRIORITY: u8 = 70;
 const LONGEST_WAIT: Duration = Duration::from_millis(20);
 /// Nothing tells the holder of a pseudo-terminal that somebody has opened it, so it is looked at.
 const LOOK_FOR_OPENER_EVERY: Duration = Duration::from_millis(1);
-/// A byte at 115200 baud takes 87 microseconds.
-const LEAST_WAIT: Span = Span::from_micros(100);
+/// A byte at 115200 baud takes 87 microseconds, one at 460800 22.
+const LEAST_WAIT: Span = Span::from_micros(50);
+const TIMER_SLACK_NANOS: u64 = 1_000;
 /// A host that is so far ahead of the line waits.
 const FULL_LINE_BYTES: usize = 4_096;

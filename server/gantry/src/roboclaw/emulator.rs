@@ -315,6 +315,7 @@ impl Emulator {
             Order::BrownOut(span) => self.brown_out(now, span),
             Order::Press(is_pressed) => switches.is_pressed = is_pressed,
             Order::Stick(level) => switches.stuck_at = level,
+            Order::Switch(axis, level) => self.rig.stuck_switches[axis.index()] = level,
             Order::Slip(axis, share) => self.rig.faults[axis.index()].encoder_slip = share,
             Order::Jam(axis, is_jammed) => self.rig.faults[axis.index()].stalled = is_jammed,
             Order::Runaway(axis, direction) => self.rig.faults[axis.index()].runaway = direction,

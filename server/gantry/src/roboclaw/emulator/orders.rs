@@ -17,6 +17,7 @@ gap P MS             a reply pauses for MS milliseconds in its middle, with prob
 brown-out MS         the boards are without power for MS milliseconds, and start anew
 press, release       the e-stop button on S3
 stick LEVEL          the e-stop pin is stuck at `pressed` or `released`, whatever the button does; `off` ends it
+switch AXIS LEVEL    the end switch of x or y is stuck at `active` or `inactive`; `off` ends it
 slip AXIS SHARE      the encoder of x or y misses this share of the motion
 jam AXIS on|off      the carriage is jammed
 runaway AXIS WAY     the bridge is stuck: full supply `positive` or `negative` unless it is open; `off` ends it
@@ -46,6 +47,8 @@ pub enum Order {
     Press(bool),
     /// The e-stop pin is stuck at active, or not, or follows the button.
     Stick(Option<bool>),
+    /// An end switch is stuck at active, or not, or follows the column.
+    Switch(Axis, Option<bool>),
     /// An encoder misses a share of the motion.
     Slip(Axis, f64),
     /// A carriage is jammed, or not.
@@ -129,6 +132,10 @@ impl<'a> Words<'a> {
                 let levels = [("pressed", Some(true)), ("released", Some(false)), ("off", None)];
                 Order::Stick(self.one_of(&levels, "pressed, released or off")?)
             }
+            Some("switch") => {
+                let levels = [("active", Some(true)), ("inactive", Some(false)), ("off", None)];
+                Order::Switch(self.axis()?, self.one_of(&levels, "active, inactive or off")?)
+            }
             Some("slip") => Order::Slip(self.axis()?, self.number(0.0, 1.0, "a share from 0 to 1")?),
             Some("jam") => {
                 Order::Jam(self.axis()?, self.one_of(&[("on", true), ("off", false)], "on or off")?)
@@ -183,8 +190,8 @@ impl<'a> Words<'a> {
     }
 }
 
-const ORDER_NAMES: &str = "lose, flip, late, missing, gap, brown-out, press, release, stick, slip, jam, runaway, push, \
-                           supply, temperature, firmware or after";
+const ORDER_NAMES: &str = "lose, flip, late, missing, gap, brown-out, press, release, stick, switch, slip, jam, \
+                           runaway, push, supply, temperature, firmware or after";
 const FIRMWARE_NAMES: &str = "older, newer, 4.1.24, 4.1.34, 4.2.8, 4.3.6 or unknown";
 
 #[cfg(test)]
@@ -206,6 +213,7 @@ mod tests {
             ("release", Order::Press(false)),
             ("stick released", Order::Stick(Some(false))),
             ("stick off", Order::Stick(None)),
+            ("switch x inactive", Order::Switch(Axis::X, Some(false))),
             ("slip y 0.02", Order::Slip(Axis::Y, 0.02)),
             ("jam x on", Order::Jam(Axis::X, true)),
             ("runaway x negative", Order::Runaway(Axis::X, Some(Direction::Negative))),

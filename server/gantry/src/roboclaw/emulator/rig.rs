@@ -12,6 +12,8 @@ use super::setup::EndSwitches;
 pub(super) struct Rig {
     pub(super) faults: [AxisFaults; 2],
     pub(super) supply_volts: f64,
+    /// End switches that are stuck at active, or not.
+    pub(super) stuck_switches: [Option<bool>; 2],
     plants: [Plant; 2],
     volts: [Option<f64>; 2],
     /// Below the first and above the second the switch is active, m.
@@ -30,6 +32,7 @@ impl Rig {
         Self {
             faults: [AxisFaults::default(); 2],
             supply_volts: machine.supply_volts,
+            stuck_switches: [None; 2],
             plants: [
                 Plant::new(&machine.x, machine, (travel.min.x, travel.max.x), start.x),
                 Plant::new(&machine.y, machine, (travel.min.y, travel.max.y), start.y),
@@ -82,7 +85,7 @@ impl Rig {
     pub(super) fn is_switch_active(&self, axis: Axis) -> bool {
         let (low_m, high_m) = self.switches_m[axis.index()];
         let at_m = self.position_m(axis);
-        at_m <= low_m || at_m >= high_m
+        self.stuck_switches[axis.index()].unwrap_or(at_m <= low_m || at_m >= high_m)
     }
 }
 

@@ -101,6 +101,22 @@ fn a_disabled_switch_shows_nothing_and_the_stop_stops() {
 }
 
 #[test]
+fn a_stuck_switch_is_never_found_or_there_from_the_beginning() {
+    let mut host = Host::with_firmware("newer");
+    assert!(host.tell(74, &[0, 0x62, 0x62]) && host.tell(133, &longs(&[200, 0])));
+    host.order("switch x inactive");
+    creep_to_the_low_end(&mut host);
+    assert!(host.position_m(Axis::X) < -0.029, "nothing stops it but the stop");
+    assert_eq!(host.status() & 0x0040_0000, 0);
+    host.order("switch x off");
+    host.run_secs(0.01);
+    assert_eq!(host.status() & 0x0040_0000, 0x0040_0000);
+    host.order("switch y active");
+    host.run_secs(0.01);
+    assert_eq!(host.status() & 0x0080_0000, 0x0080_0000);
+}
+
+#[test]
 fn a_limit_lets_a_motor_go_away_and_not_on() {
     for code in [0x22, 0x32] {
         let mut host = Host::with_firmware("newer");
