@@ -27,7 +27,7 @@ pub struct Evaluate {
     /// So many reaches of the made-up visitor instead, where there are no recordings. They are no evidence about people.
     #[arg(long, conflicts_with = "paths", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub synthetic: Option<u32>,
-    /// Rules by name; every rule when not given.
+    /// Rules by name; when not given, every one but `bound`, the physical limit, which is searched for a second or more a reach.
     #[arg(long, value_delimiter = ',', value_parser = RuleChoice::parse)]
     pub rules: Vec<RuleChoice>,
     /// Motions by name; when not given, the default one, and every one for the paper's rules.

@@ -13,6 +13,7 @@
 //! constant acceleration for a step each, everything that can be reached is a set of bits, and the rule clears the bits
 //! of places from which a step would break it ([`separation`]).
 
+mod driven;
 mod lattice;
 mod separation;
 mod sweep;
@@ -20,17 +21,17 @@ mod walk;
 
 use covr_engine::frames::{Floor, Planar};
 use covr_engine::machine::{Limits, Travel};
-use covr_engine::observation::PersonId;
 use covr_engine::scene::Scene;
-use covr_engine::time::{Span, Time};
+use covr_engine::time::Time;
 
-use crate::checker::{Checker, Moment, Motion, PersonNow, Rules, Track};
+use crate::checker::{Motion, Rules};
 use crate::replay::{TrialProblem, rules_of};
 use crate::trace::Recording;
+pub use driven::Driven;
 use lattice::AxisLattice;
 use separation::{Separation, Sharpness};
 use sweep::{State, Sweep};
-use walk::{TICK, Walk};
+use walk::Walk;
 
 /// A reach whose limit is asked for.
 #[derive(Debug, Clone, Copy)]
@@ -59,7 +60,7 @@ pub struct Question<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Bound {
     /// Yes: by this motion, which the checker has passed.
-    Possible(Plan),
+    Possible(Box<Driven>),
     /// None was found, and none was excluded.
     Undecided,
     /// No: not even with every rounding in the column's favour.
@@ -88,8 +89,9 @@ pub fn bound(question: &Question<'_>) -> Result<Bound, TrialProblem> {
     for (levels, spare_m) in STRICT {
         let sweep = strict(question, &walk, &rules, levels, spare_m);
         let plan = sweep.path().map(|path| Plan::of(&sweep, &path));
-        if let Some(plan) = plan.filter(|plan| passes(plan, &walk, &rules, question.place)) {
-            return Ok(Bound::Possible(plan));
+        let driven = plan.map(|plan| Driven::along(plan, &walk, &rules, question.place));
+        if let Some(driven) = driven.filter(Driven::serves) {
+            return Ok(Bound::Possible(Box::new(driven)));
         }
     }
     let possible = lenient(question, &walk, &rules).reaches_goal();
@@ -203,41 +205,8 @@ fn sweep<'a>(
     }
 }
 
-/// Whether the checker passes the plan, and the column stands where it should.
-fn passes(plan: &Plan, walk: &Walk, rules: &Rules, place: Floor) -> bool {
-    let mut checker = Checker::new(rules.clone(), Track::True);
-    let mut fast_tick = None;
-    for (tick, footing) in walk.steps().iter().enumerate() {
-        let column = plan.at(tick as f64 * TICK.secs());
-        let person = PersonNow {
-            id: PersonId(1),
-            head: footing.head,
-            height_m: footing.height_m,
-            to_enabled_object_m: footing.to_object_m,
-            contact_armed: false,
-        };
-        checker.check(&Moment {
-            at: Time::ZERO + Span::from_micros(tick as i64 * TICK.micros()),
-            column,
-            follows_setpoints: true,
-            homed: true,
-            latched: false,
-            persons: &[person],
-        });
-        if column.velocity.norm() >= AT_REST_MPS {
-            fast_tick = Some(tick);
-        }
-    }
-    let last = walk.steps().len() - 1;
-    let calm = fast_tick.is_none_or(|tick| (last - tick) as f64 * TICK.secs() >= CALM_SECS - 1e-9);
-    let there = plan.at(walk.secs()).position.distance_m(place) <= WITHIN_M;
-    calm && there && checker.verdict().violations() == 0
-}
-
 /// How near the column's centre has to be, m.
 const WITHIN_M: f64 = 0.1;
-/// How slow, m/s.
-const AT_REST_MPS: f64 = 0.05;
 /// For how long, s.
 const CALM_SECS: f64 = 0.2;
 /// From 0.05 m/s to rest takes longer than this for every axis that brakes at 2.5 m/s2 or less, s.

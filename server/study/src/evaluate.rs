@@ -6,6 +6,7 @@
 //! threads: each trial has a place of its own, and is summed up in that order.
 
 mod blame;
+mod bounded;
 mod draw;
 mod explain;
 mod plan;

@@ -217,6 +217,7 @@ mod tests {
             late_came_true: BTreeMap::new(),
             in_time_came_true: BTreeMap::new(),
             in_time_brier: BTreeMap::new(),
+            not_excluded: None,
         }
     }
 

@@ -73,7 +73,7 @@ impl Cause {
 /// The trial, and its cause if it failed.
 pub(super) fn judged(course: &Course<'_>, outcome: TrialOutcome) -> Result<Judged, EvaluationProblem> {
     let cause = if outcome.success { None } else { Some(cause(course, &outcome)?) };
-    Ok(Judged { outcome, cause })
+    Ok(Judged { outcome, cause, not_excluded: None })
 }
 
 fn cause(course: &Course<'_>, outcome: &TrialOutcome) -> Result<Cause, EvaluationProblem> {

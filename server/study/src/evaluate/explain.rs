@@ -7,7 +7,7 @@ use covr_engine::motion::travel_secs;
 use covr_engine::time::Time;
 
 use super::blame;
-use super::plan::{Objects, Plan};
+use super::plan::{Objects, Plan, RuleChoice};
 use super::run::{Course, EvaluationProblem, cells, pace};
 use super::subjects::{Subjects, task, travel};
 use crate::replay::{TrialOutcome, Walk};
@@ -27,6 +27,11 @@ pub fn explain(subjects: &Subjects, plan: &Plan, trial: &str) -> Result<Explanat
         || EvaluationProblem::NoTrial { trial: trial.to_owned(), like: subjects.trial_like(trial) };
     let reach = subjects.reaches.iter().find(|reach| reach.recording.trial == trial).ok_or_else(no_trial)?;
     let cell = *cells(plan).first().ok_or(EvaluationProblem::Nothing)?;
+    if cell.rule == RuleChoice::Bound {
+        let (found, expected) =
+            ("a trial to explain", "`covr evaluate`: no engine runs that could be watched");
+        return Err(EvaluationProblem::Bound { found, expected });
+    }
     let walk = Walk::of_reach(&reach.recording, &pace(plan, &plan.conditions))?;
     let course = Course::of(plan, cell, reach, &walk);
     let mut seen = Vec::new();

@@ -16,6 +16,9 @@ pub enum RuleChoice {
     Rule(RuleName),
     /// The goal is known from the first pose: the ceiling of route and timing.
     Told,
+    /// Goal and walk are known from the first pose, and no engine decides: the physical limit ([`crate::bound`]). A
+    /// search a reach, so slow; for those who ask for it by name.
+    Bound,
 }
 
 /// How many objects are shown.
@@ -143,7 +146,10 @@ impl Plan {
 
     /// The motions that a rule is tried with.
     pub(super) fn motions_of(&self, rule: RuleChoice) -> Vec<MotionName> {
-        if !self.motions.is_empty() {
+        if rule == RuleChoice::Bound {
+            // It is over all motions.
+            vec![self.default_motion]
+        } else if !self.motions.is_empty() {
             self.motions.clone()
         } else if rule.is_of_the_paper() {
             MotionName::ALL.to_vec()
@@ -202,9 +208,14 @@ impl SeparationChoice {
 }
 
 impl RuleChoice {
-    /// Every rule.
+    /// Every rule that an engine runs: what is evaluated when nobody says.
     pub fn all() -> Vec<Self> {
         RuleName::ALL.into_iter().map(Self::Rule).chain([Self::Told]).collect()
+    }
+
+    /// Every rule that has a name.
+    fn named() -> Vec<Self> {
+        Self::all().into_iter().chain([Self::Bound]).collect()
     }
 
     /// Its name on the command line and in tables.
@@ -212,12 +223,13 @@ impl RuleChoice {
         match self {
             Self::Rule(rule) => rule.name(),
             Self::Told => "told",
+            Self::Bound => "bound",
         }
     }
 
     /// The rule of this name.
     pub fn parse(name: &str) -> Result<Self, PlanProblem> {
-        named("rule", name, &Self::all(), Self::name)
+        named("rule", name, &Self::named(), Self::name)
     }
 
     /// One of the paper's readings: run with every motion, so that prediction and motion can be told apart.
@@ -225,11 +237,16 @@ impl RuleChoice {
         self.name().starts_with("paper")
     }
 
-    /// The engine's rule. Told, every other prior is nothing, so that any rule has but one choice.
+    /// The goal is known, so a prior says nothing.
+    pub(super) const fn knows_the_goal(self) -> bool {
+        matches!(self, Self::Told | Self::Bound)
+    }
+
+    /// The engine's rule. Where the goal is known every other prior is nothing, so that any rule has but one choice.
     pub const fn engine_rule(self) -> RuleName {
         match self {
             Self::Rule(rule) => rule,
-            Self::Told => RuleName::PaperBest,
+            Self::Told | Self::Bound => RuleName::PaperBest,
         }
     }
 }
@@ -331,9 +348,10 @@ mod tests {
 
     #[test]
     fn every_name_is_read_back_and_others_are_refused_with_the_names() {
-        for rule in RuleChoice::all() {
+        for rule in RuleChoice::named() {
             assert_eq!(RuleChoice::parse(rule.name()), Ok(rule));
         }
+        assert!(!RuleChoice::all().contains(&RuleChoice::Bound));
         let refused = RuleChoice::parse("papper").unwrap_err().to_string();
         assert!(refused.starts_with("rule: found `papper`") && refused.contains("told"), "{refused}");
         assert_eq!(Objects::parse("all"), Ok(Objects::All));

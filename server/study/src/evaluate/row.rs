@@ -120,6 +120,8 @@ pub struct Row {
     pub in_time_brier: BTreeMap<String, f64>,
     /// Failed trials by cause; empty where nobody looked for it.
     pub blame: BTreeMap<&'static str, u64>,
+    /// Of the rule `bound` alone: trials that were found to be possible, and those of which it is not known.
+    pub not_excluded: Option<usize>,
 }
 
 /// A trial, and why it failed if it did and somebody looked.
@@ -127,6 +129,8 @@ pub struct Row {
 pub(super) struct Judged {
     pub outcome: TrialOutcome,
     pub cause: Option<Cause>,
+    /// Of the rule `bound` alone: whether it could have been served, for all that is known.
+    pub not_excluded: Option<bool>,
 }
 
 impl Judged {
@@ -159,6 +163,8 @@ impl Row {
         for cause in judged.iter().filter_map(|judged| judged.cause) {
             *blame.entry(cause.name()).or_insert(0) += 1;
         }
+        let possible = judged.iter().filter_map(|judged| judged.not_excluded);
+        let not_excluded = possible.map(usize::from).reduce(|count, one| count + one);
         let verdicts = || outcomes.iter().flat_map(|o| [&o.true_verdict, &o.commanded_verdict]);
         let separation_breaches = verdicts().map(|verdict| verdict.separation).sum();
         let of_all: u64 = verdicts().map(Verdict::violations).sum();
@@ -225,6 +231,7 @@ impl Row {
             in_time_came_true: said.in_time_came_true,
             in_time_brier: said.brier,
             blame,
+            not_excluded,
         }
     }
 }

@@ -88,7 +88,7 @@ fn key(plan: &Plan, cell: &Cell, file: &str, task_name: &str) -> RowKey {
         file: file.to_owned(),
         task: task_name.to_owned(),
         rule: cell.rule.name(),
-        motion: cell.motion.name(),
+        motion: if cell.rule == RuleChoice::Bound { "any" } else { cell.motion.name() },
         default: cell.rule == RuleChoice::Rule(plan.default_rule) && cell.motion == plan.default_motion,
         prior: cell.prior.name(),
         draw: cell.draw.name(),

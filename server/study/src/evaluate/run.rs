@@ -14,6 +14,7 @@ use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::{MachineParameters, ParameterProblem};
 
 use super::blame;
+use super::bounded;
 use super::draw::Draw;
 use super::plan::{Conditions, MachineKind, Objects, Plan, Prior, RuleChoice, SeparationChoice};
 use super::row::{Evaluation, Judged};
@@ -40,6 +41,14 @@ pub enum EvaluationProblem {
         trial: String,
         /// What could have been.
         like: String,
+    },
+    /// The limit is asked for of what has none.
+    #[error("rule bound: found {found}, expected {expected}")]
+    Bound {
+        /// What was said.
+        found: &'static str,
+        /// What could have been.
+        expected: &'static str,
     },
     /// A trial cannot be replayed.
     #[error(transparent)]
@@ -78,6 +87,8 @@ pub fn sweep(
     if jobs.is_empty() {
         return Err(EvaluationProblem::Nothing);
     }
+    let sessions = jobs.iter().filter(|job| matches!(job, Job::Session(_))).count();
+    bounded::check(plan, sessions == jobs.len())?;
     let done = AtomicUsize::new(0);
     let replays = cells.len() * intentions.len();
     let outcomes = parallel::each(jobs.len(), plan.threads, |number| {
@@ -104,7 +115,7 @@ pub fn sweep(
         wall_secs: 0.0,
         simulated_secs: cases.iter().flat_map(|case| case.by_cell.iter().flatten()).map(Judged::secs).sum(),
         conditions: conditions_in_words(&plan.conditions),
-        left_out: subjects.left_out.clone(),
+        left_out: subjects.left_out.iter().cloned().chain(bounded::left_out(plan, &jobs)).collect(),
         rows: rows(plan, &cells, &cases),
         pooled: pooled(plan, &cells, &cases),
     };
@@ -113,7 +124,7 @@ pub fn sweep(
 
 /// What a thread takes at once.
 #[derive(Debug, Clone, Copy)]
-enum Job<'a> {
+pub(super) enum Job<'a> {
     Reach(&'a Reach),
     Session(&'a Session),
 }
@@ -231,7 +242,7 @@ pub(super) fn cells(plan: &Plan) -> Vec<Cell> {
                     for &prior in &plan.priors {
                         for &objects in &plan.objects {
                             // With the goal alone, or told, a prior says nothing.
-                            let alone = objects == Objects::Count(1) || rule == RuleChoice::Told;
+                            let alone = objects == Objects::Count(1) || rule.knows_the_goal();
                             if prior == Prior::None || !alone {
                                 cells.push(Cell { rule, motion, separation, prior, draw, objects });
                             }
@@ -268,6 +279,9 @@ fn with_each(
 
 /// The trial, with its cause if it is asked for; none where the recording has no distractor to name wrongly.
 fn judged(course: &Course<'_>) -> Result<Option<Judged>, EvaluationProblem> {
+    if course.cell.rule == RuleChoice::Bound {
+        return bounded::judged(course).map(Some);
+    }
     if course.cell.prior == Prior::Wrong && course.first_distractor().is_none() {
         return Ok(None);
     }
@@ -275,7 +289,7 @@ fn judged(course: &Course<'_>) -> Result<Option<Judged>, EvaluationProblem> {
     if course.plan.blames {
         return blame::judged(course, outcome).map(Some);
     }
-    Ok(Some(Judged { outcome, cause: None }))
+    Ok(Some(Judged { outcome, cause: None, not_excluded: None }))
 }
 
 /// How the engine decides in a cell.

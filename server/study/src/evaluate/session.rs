@@ -36,10 +36,14 @@ pub(super) fn visits_by_cell(
     let mut by_visit: Vec<Vec<Option<Judged>>> =
         slots.iter().filter(|slot| slot.valid).map(|_| Vec::with_capacity(cells.len())).collect();
     for cell in cells {
+        if cell.rule == RuleChoice::Bound {
+            by_visit.iter_mut().for_each(|of_visit| of_visit.push(None));
+            continue;
+        }
         let outcomes = replayed(plan, intention, cell, &walk, &slots)?;
         let valid = outcomes.into_iter().zip(&slots).filter(|(_, slot)| slot.valid);
         for (of_visit, (outcome, _)) in by_visit.iter_mut().zip(valid) {
-            of_visit.push(outcome.map(|outcome| Judged { outcome, cause: None }));
+            of_visit.push(outcome.map(|outcome| Judged { outcome, cause: None, not_excluded: None }));
         }
     }
     Ok(by_visit)

@@ -83,6 +83,7 @@ pub fn terminal(evaluation: &Evaluation) -> String {
     }
     text += &causes(evaluation);
     text += &foretold(evaluation);
+    text += &bounds(evaluation);
     text += &goals(evaluation);
     for LeftOut { file, recordings, because } in &evaluation.left_out {
         let _ = writeln!(text, "left out: {recordings} recordings of {file}: {because}");
@@ -164,19 +165,51 @@ fn goals(evaluation: &Evaluation) -> String {
             "goal {verdict}: {file} {rule} {motion} {prior} {draw} {success:.1} %, at least {least:.1} %"
         );
     }
+    for told in evaluation.pooled.iter().filter(on).filter(|row| row.rule == "told" && row.task == "fixed") {
+        let bound = evaluation.pooled.iter().find(|row| {
+            row.rule == "bound" && (&row.file, &row.task, row.draw) == (&told.file, &told.task, told.draw)
+        });
+        let Some(bound) = bound.filter(|bound| bound.trials == told.trials) else { continue };
+        let below = 100.0 * (bound.success - told.success);
+        let verdict = if below <= BELOW_BOUND { "reached" } else { "missed" };
+        let Row { file, task, motion, draw, .. } = told;
+        let _ = writeln!(
+            text,
+            "goal {verdict}: {file} {task} told {motion} {draw} {below:.1} points below bound, at most {BELOW_BOUND:.1}"
+        );
+    }
     let kept = || evaluation.rows.iter().filter(|row| row.separation == "on");
     if kept().next().is_some() {
         let breaches: u64 = kept().map(|row| row.separation_breaches).sum();
         let verdict = if breaches == 0 { "reached" } else { "missed" };
         let _ = writeln!(text, "goal {verdict}: {breaches} separation violations, at most 0");
-        let farthest =
-            kept().filter(|row| row.successes > 0).map(|row| row.distance_at_reach_m).fold(0.0, f64::max);
+        let farthest = kept()
+            .filter(|row| row.successes > 0 && row.rule != "bound")
+            .map(|row| row.distance_at_reach_m)
+            .fold(0.0, f64::max);
         let verdict = if farthest < TOUCH_M { "reached" } else { "missed" };
         let _ = writeln!(
             text,
             "goal {verdict}: column to goal at touch {:.2} cm in the worst row, under {:.1} cm",
             100.0 * farthest,
             100.0 * TOUCH_M
+        );
+    }
+    text
+}
+
+/// Between which shares the physical limit lies, a line for each pool of it.
+fn bounds(evaluation: &Evaluation) -> String {
+    let mut text = String::new();
+    for row in &evaluation.pooled {
+        let Some(not_excluded) = row.not_excluded else { continue };
+        let Row { file, task, draw, trials, successes, .. } = row;
+        let share = |count: usize| 100.0 * count as f64 / *trials as f64;
+        let _ = writeln!(
+            text,
+            "bound {file} {task} {draw}: from {:.1} % ({successes} motions found and passed by the checker) to {:.1} % ({not_excluded} of {trials} not excluded)",
+            share(*successes),
+            share(not_excluded),
         );
     }
     text
@@ -228,6 +261,8 @@ impl Evaluation {
 
 /// The goals are for this speed, m/s.
 const GOALS_V_H_MPS: f64 = 1.6;
+/// `told` may be so many points below `bound`.
+const BELOW_BOUND: f64 = 1.5;
 /// A wrong prior may cost so many points.
 const WRONG_COSTS: f64 = 5.0;
 /// From the column to the goal at the touch, m.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::evaluate::explain;
+use crate::evaluate::{explain, terminal};
 use covr_engine::intention::RuleName;
 use std::fmt::Write;
 use std::path::Path;
@@ -156,4 +156,49 @@ fn the_made_up_visitor_stands_in_where_there_are_no_recordings() {
     let made_up = Plan { objects: vec![Objects::Count(2)], priors: vec![Prior::None], ..plan(2) };
     let one = evaluate(&Subjects::synthetic(10), &made_up, &|_, _| ()).unwrap();
     assert!(one.rows.iter().all(|row| row.trials == 10 && row.file == "synthetic" && row.violations == 0));
+}
+
+#[test]
+fn the_limit_is_a_row_of_its_own_with_what_could_not_be_excluded() {
+    let folder = tempfile::tempdir().unwrap();
+    let subjects = subjects(folder.path());
+    let asked = Plan {
+        rules: vec![RuleChoice::Told, RuleChoice::Bound],
+        objects: vec![Objects::Count(1)],
+        ..plan(2)
+    };
+    let both = evaluate(&subjects, &asked, &|_, _| ()).unwrap();
+    let [told, bound] = &both.rows[..] else { panic!("{:?}", both.rows) };
+    assert_eq!((told.not_excluded, bound.rule, bound.motion, bound.prior), (None, "bound", "any", "none"));
+    assert_eq!((bound.trials, bound.successes, bound.not_excluded, bound.violations), (2, 2, Some(2), 0));
+    assert!(bound.least_separation_moving_m.unwrap() > 0.35, "{bound:?}");
+    let words = terminal(&both);
+    for said in
+        ["bound made_reach fixed hash: from 100.0 % (2 motions", "goal reached: made_reach fixed told proxy"]
+    {
+        assert!(words.contains(said), "{said:?} is not in {words}");
+    }
+    // So slow a machine cannot come, whatever it knows.
+    let conditions = Conditions { acceleration_share: 0.02, ..Conditions::AS_RECORDED };
+    let slow = evaluate(&subjects, &Plan { conditions, ..asked }, &|_, _| ()).unwrap();
+    assert!(slow.rows.iter().all(|row| row.successes == 0), "{:?}", slow.rows);
+    assert_eq!(slow.rows[1].not_excluded, Some(0));
+}
+
+#[test]
+fn the_limit_of_what_has_none_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let bound = Plan { rules: vec![RuleChoice::Bound], ..plan(1) };
+    let apart = Plan { separations: vec![SeparationChoice::Off], ..bound.clone() };
+    let refused = evaluate(&subjects(folder.path()), &apart, &|_, _| ()).unwrap_err().to_string();
+    assert!(refused.starts_with("rule bound: found separation off, expected on"), "{refused}");
+    let refused = explain(&subjects(folder.path()), &bound, "two").unwrap_err().to_string();
+    assert!(refused.contains("rule bound: found a trial to explain"), "{refused}");
+    let sessions = session(folder.path());
+    let refused = evaluate(&sessions, &bound, &|_, _| ()).unwrap_err().to_string();
+    assert!(refused.contains("found whole sessions alone, expected recorded reaches"), "{refused}");
+    // Beside another rule it has no row there, and that is said.
+    let beside = Plan { rules: vec![RuleChoice::Told, RuleChoice::Bound], ..bound };
+    let one = evaluate(&sessions, &beside, &|_, _| ()).unwrap();
+    assert!(one.rows.iter().all(|row| row.rule == "told") && one.left_out[0].recordings == 1, "{one:?}");
 }
