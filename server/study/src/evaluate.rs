@@ -10,6 +10,7 @@ mod bounded;
 mod draw;
 mod explain;
 mod plan;
+mod reliability;
 mod row;
 mod rows;
 mod run;
@@ -24,6 +25,7 @@ pub use explain::{Explanation, explain};
 pub use plan::{
     Conditions, MachineKind, Objects, Plan, PlanProblem, Prior, RuleChoice, SeparationChoice, motion,
 };
+pub use reliability::{Bin, calibration_error};
 pub use row::{Evaluation, LeftOut, Row};
 pub use run::{EvaluationProblem, Progress, evaluate, sweep};
 pub use subjects::Subjects;

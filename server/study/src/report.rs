@@ -178,6 +178,7 @@ table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluate::Bin;
 
     fn row(rule: &'static str, objects: usize, success: f64) -> Row {
         Row {
@@ -210,6 +211,9 @@ mod tests {
             peak_acceleration_mps2: 1.0,
             peak_jerk_mps3: 1.0,
             proxy_distance_m: 0.0,
+            in_place: [("0.0".to_owned(), success), ("1.0".to_owned(), 0.5 * success)].into(),
+            reliability: vec![Bin { from: 0.7, to: 0.8, cases: 8, probability: 0.75, share: 0.5 }],
+            calibration_error: Some(0.25),
             top1: [("0.0".to_owned(), 0.9), ("1.0".to_owned(), 0.5)].into(),
             top1_wall: BTreeMap::new(),
             log_loss: [("0.0".to_owned(), 0.0), ("1.0".to_owned(), std::f64::consts::LN_2)].into(),

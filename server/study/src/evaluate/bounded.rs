@@ -65,21 +65,8 @@ pub(super) fn judged(course: &Course<'_>) -> Result<Judged, EvaluationProblem> {
     })?;
     let secs = (walk.ends() - walk.begins()).secs();
     let known = BeliefTold { detected_before_reach_secs: Some(secs), ..BeliefTold::default() };
-    let at_start = TrialOutcome {
-        success: false,
-        within_10cm: false,
-        distance_at_reach_m: course.reach.column.distance_m(place),
-        in_place_before_reach_secs: 0.0,
-        stops: 0,
-        column_travel_m: 0.0,
-        peaks: [0.0; 3],
-        proxy_distance_m: 0.0,
-        belief: known,
-        foretold: Default::default(),
-        simulated_secs: secs,
-        true_verdict: Default::default(),
-        commanded_verdict: Default::default(),
-    };
+    let from_start = course.reach.column.distance_m(place);
+    let at_start = TrialOutcome { belief: known, ..TrialOutcome::nowhere(from_start, secs) };
     let not_excluded = Some(found != Bound::Impossible);
     let outcome = match found {
         Bound::Possible(driven) => TrialOutcome {

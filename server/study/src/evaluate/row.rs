@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::blame::Cause;
 use super::plan::SeparationChoice;
+use super::reliability::{Bin, calibration_error, reliability};
 use crate::checker::Verdict;
 use crate::replay::{FORETOLD_BEFORE_REACH_SECS, LOOKS_BEFORE_REACH_SECS, TrialOutcome};
 
@@ -103,12 +104,18 @@ pub struct Row {
     pub peak_jerk_mps3: f64,
     /// Mean distance between column and proxy, m.
     pub proxy_distance_m: f64,
+    /// Share in which the column stood in place from so many seconds before the reach on, and to it.
+    pub in_place: BTreeMap<String, f64>,
     /// Share with the goal most probable, by seconds before the reach.
     pub top1: BTreeMap<String, f64>,
     /// The same among the targets of its wall; empty where there are no walls.
     pub top1_wall: BTreeMap<String, f64>,
     /// Mean negative logarithm of the goal's probability, by seconds before the reach.
     pub log_loss: BTreeMap<String, f64>,
+    /// How often the most probable object was the goal, by its probability, over all those moments.
+    pub reliability: Vec<Bin>,
+    /// Mean distance between that probability and that share; null without a belief.
+    pub calibration_error: Option<f64>,
     /// Share of trials in which the engine said that the column would be late for the goal (`late_by_s` above 0), by
     /// seconds before the reach.
     pub said_late: BTreeMap<String, f64>,
@@ -175,9 +182,11 @@ impl Row {
         let greatest = |i: usize| outcomes.iter().map(|o| o.peaks[i]).fold(0.0, f64::max);
         let detections: Vec<f64> =
             outcomes.iter().filter_map(|o| o.belief.detected_before_reach_secs).collect();
-        let [mut top1, mut top1_wall, mut log_loss] = [(); 3].map(|()| BTreeMap::new());
+        let [mut top1, mut top1_wall, mut log_loss, mut in_place] = [(); 4].map(|()| BTreeMap::new());
         for (look, before_secs) in LOOKS_BEFORE_REACH_SECS.iter().enumerate() {
             let name = || format!("{before_secs:.1}");
+            let stood = |o: &&&TrialOutcome| o.in_place_before_reach_secs >= *before_secs;
+            in_place.insert(name(), share(good.iter().filter(stood).count()));
             let seen: Vec<_> = outcomes.iter().filter_map(|o| o.belief.at[look]).collect();
             let walls: Vec<bool> = seen.iter().filter_map(|b| b.goal_is_best_of_wall).collect();
             let as_share = |yes: bool| if yes { 1.0 } else { 0.0 };
@@ -190,6 +199,7 @@ impl Row {
                 top1_wall.insert(name(), mean(walls.iter().map(|best| as_share(*best))));
             }
         }
+        let reliability = reliability(&outcomes);
         let said = Foretelling::of(&outcomes);
         Self {
             file: key.file,
@@ -223,9 +233,12 @@ impl Row {
             peak_acceleration_mps2: greatest(1),
             peak_jerk_mps3: greatest(2),
             proxy_distance_m: mean(outcomes.iter().map(|o| o.proxy_distance_m)),
+            in_place,
             top1,
             top1_wall,
             log_loss,
+            calibration_error: calibration_error(&reliability),
+            reliability,
             said_late: said.late,
             late_came_true: said.late_came_true,
             in_time_came_true: said.in_time_came_true,

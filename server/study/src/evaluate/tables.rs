@@ -276,6 +276,8 @@ fn flat(row: &Row) -> Result<Vec<(String, String)>, serde_json::Error> {
     let mut cells = Vec::new();
     for (name, value) in fields {
         match value {
+            // A list of its own for each row; the CSV has the error that it comes to.
+            Value::Array(_) if name == "reliability" => {}
             Value::Array(items) => {
                 for (end, item) in ["low", "high"].iter().zip(items) {
                     cells.push((format!("{name}_{end}"), plain(&item)));

@@ -11,6 +11,8 @@ pub const LOOKS_BEFORE_REACH_SECS: [f64; 5] = [0.0, 0.5, 1.0, 2.0, 3.0];
 pub struct BeliefThen {
     /// The probability given to the goal.
     pub goal_probability: f64,
+    /// The greatest probability given to any object; 0 without a belief.
+    pub best_probability: f64,
     /// The goal has the greatest.
     pub goal_is_best: bool,
     /// The goal has the greatest among the targets of its own wall; none where there are no walls.
@@ -63,12 +65,14 @@ impl BeliefWatch {
     fn then(&self, weights: &[f64]) -> BeliefThen {
         let total: f64 = weights.iter().sum();
         let of_goal = weights.get(self.goal).copied().unwrap_or(0.0);
+        let greatest = weights.iter().copied().fold(0.0, f64::max);
         let leads = |among: &dyn Fn(usize) -> bool| {
             of_goal > 0.0
                 && weights.iter().enumerate().all(|(i, w)| i == self.goal || !among(i) || *w < of_goal)
         };
         BeliefThen {
             goal_probability: if total > 0.0 { of_goal / total } else { 0.0 },
+            best_probability: if total > 0.0 { greatest / total } else { 0.0 },
             goal_is_best: leads(&|_| true),
             goal_is_best_of_wall: self.same_wall.as_ref().map(|same_wall| leads(&|i| same_wall[i])),
         }
@@ -96,7 +100,9 @@ mod tests {
         assert_eq!(told.at[0].unwrap().goal_probability, 0.9);
         let two_before = told.at[3].unwrap();
         assert!(!two_before.goal_is_best && two_before.goal_is_best_of_wall == Some(true));
-        assert_eq!(told.at[4].unwrap().goal_probability, 0.625);
+        let three_before = told.at[4].unwrap();
+        assert_eq!((three_before.goal_probability, three_before.best_probability), (0.625, 0.625));
+        assert_eq!(two_before.best_probability, 0.6 / (0.6 + 0.3 + 0.1));
     }
 
     #[test]

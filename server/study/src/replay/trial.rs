@@ -101,6 +101,27 @@ pub struct TrialOutcome {
     pub commanded_verdict: Verdict,
 }
 
+impl TrialOutcome {
+    /// A column that stays so far from the goal's place for so long.
+    pub(crate) fn nowhere(distance_at_reach_m: f64, simulated_secs: f64) -> Self {
+        Self {
+            success: false,
+            within_10cm: false,
+            distance_at_reach_m,
+            in_place_before_reach_secs: 0.0,
+            stops: 0,
+            column_travel_m: 0.0,
+            peaks: [0.0; 3],
+            proxy_distance_m: 0.0,
+            belief: BeliefTold::default(),
+            foretold: Default::default(),
+            simulated_secs,
+            true_verdict: Verdict::default(),
+            commanded_verdict: Verdict::default(),
+        }
+    }
+}
+
 /// Why a recording cannot be replayed as a reach.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrialProblem {

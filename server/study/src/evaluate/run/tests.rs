@@ -53,6 +53,9 @@ fn the_table_is_the_same_for_any_number_of_threads() {
     let told = one.rows.iter().find(|row| row.rule == "told" && row.objects == 0).unwrap();
     assert_eq!((told.trials, told.violations, told.success), (2, 0, 1.0));
     assert_eq!(told.top1["0.0"], 1.0);
+    assert!(told.in_place["0.0"] == told.success && told.in_place["3.0"] <= told.in_place["1.0"], "{told:?}");
+    // Whoever is told is sure, and right.
+    assert_eq!((told.reliability.len(), told.calibration_error), (1, Some(0.0)));
     assert_eq!((told.said_late["0.5"], told.in_time_came_true["0.5"]), (0.0, 1.0));
     assert!(told.in_time_brier["0.5"] < 0.05 && told.late_came_true.is_empty(), "{told:?}");
     assert!(one.rows.iter().filter(|row| row.default).all(|row| row.rule == "paper-best"));
