@@ -32,7 +32,7 @@ pub fn explain(subjects: &Subjects, plan: &Plan, trial: &str) -> Result<Explanat
             ("a trial to explain", "`covr evaluate`: no engine runs that could be watched");
         return Err(EvaluationProblem::Bound { found, expected });
     }
-    let walk = Walk::of_reach(&reach.recording, &pace(plan, &plan.conditions))?;
+    let walk = Walk::of_reach(&reach.recording, &pace(plan, &plan.conditions, &reach.recording))?;
     let course = Course::of(plan, cell, reach, &walk);
     let mut seen = Vec::new();
     let outcome = course.replayed_before(&mut |glimpse| {

@@ -12,6 +12,7 @@ use covr_gantry::contract::Simulated;
 use covr_gantry::ideal::IdealMachine;
 use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::{MachineParameters, ParameterProblem};
+use sha2::{Digest, Sha256};
 
 use super::blame;
 use super::bounded;
@@ -190,7 +191,7 @@ impl<'a> Course<'a> {
             conduct: conduct(self.plan, &self.cell, self.intention),
             told_from: self.told_from,
             link: self.conditions.link(),
-            seed: SEED,
+            seed: seed(&self.reach.recording, "link"),
         };
         let (travel, place) = (travel(&self.reach.recording), self.reach.column);
         let machine = machine(self.machine, self.limits, travel, place)?;
@@ -204,7 +205,8 @@ impl<'a> Course<'a> {
         if conditions == self.conditions {
             return Ok(None);
         }
-        let walk = Walk::of_reach(&self.reach.recording, &pace(self.plan, &conditions))?;
+        let walk =
+            Walk::of_reach(&self.reach.recording, &pace(self.plan, &conditions, &self.reach.recording))?;
         let course = Course { walk: &walk, conditions, ..*self };
         course.replayed().map(Some)
     }
@@ -265,7 +267,7 @@ fn with_each(
 ) -> Result<Vec<Vec<Vec<Option<Judged>>>>, EvaluationProblem> {
     match job {
         Job::Reach(reach) => {
-            let walk = Walk::of_reach(&reach.recording, &pace(plan, &plan.conditions))?;
+            let walk = Walk::of_reach(&reach.recording, &pace(plan, &plan.conditions, &reach.recording))?;
             let judge =
                 |intention, cell| judged(&Course { intention, ..Course::of(plan, cell, reach, &walk) });
             let all = |intention| cells.iter().map(|&cell| judge(intention, cell)).collect::<Result<_, _>>();
@@ -330,8 +332,15 @@ pub(super) fn machine(
     })
 }
 
-pub(super) fn pace(plan: &Plan, conditions: &Conditions) -> Pace {
-    Pace { period: plan.machine.period(), pose_hz: POSE_HZ, noise: conditions.noise, seed: SEED }
+pub(super) fn pace(plan: &Plan, conditions: &Conditions, recording: &Recording) -> Pace {
+    let seed = seed(recording, "noise");
+    Pace { period: plan.machine.period(), pose_hz: POSE_HZ, noise: conditions.noise, seed }
+}
+
+/// Every trial has losses and noise of its own, the same for each rule, number of objects and number of threads.
+pub(super) fn seed(recording: &Recording, of: &str) -> u64 {
+    let hash: [u8; 32] = Sha256::digest(format!("{}/{of}", recording.trial)).into();
+    hash.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))
 }
 
 fn is_chosen(recording: &Recording, plan: &Plan) -> bool {
@@ -368,8 +377,6 @@ fn conditions_in_words(conditions: &Conditions) -> BTreeMap<&'static str, f64> {
 const POSE_HZ: f64 = 75.0;
 /// The paper's prior on the goal.
 const FAVOURED: f64 = 0.75;
-/// Of losses and noise.
-pub(super) const SEED: u64 = 1;
 
 #[cfg(test)]
 mod tests;

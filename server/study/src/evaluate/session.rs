@@ -6,7 +6,7 @@ use covr_engine::time::Time;
 
 use super::plan::{Plan, Prior, RuleChoice};
 use super::row::Judged;
-use super::run::{Cell, EvaluationProblem, SEED, conduct, machine, pace, prior_of};
+use super::run::{Cell, EvaluationProblem, conduct, machine, pace, prior_of, seed};
 use super::subjects::{Session, TRAVEL_MARGIN_M, travel};
 use crate::replay::{SessionReplay, TrialOutcome, VisitPlan, Walk};
 use crate::trace::Recording;
@@ -32,7 +32,7 @@ pub(super) fn visits_by_cell(
     let slots = slots(recording);
     let begins = recording.frames.first().map_or(Time::ZERO, |frame| frame.at);
     let ends = slots.last().map_or(begins, |slot| slot.reach);
-    let walk = Walk::between(recording, begins, ends, &pace(plan, &plan.conditions))?;
+    let walk = Walk::between(recording, begins, ends, &pace(plan, &plan.conditions, recording))?;
     let mut by_visit: Vec<Vec<Option<Judged>>> =
         slots.iter().filter(|slot| slot.valid).map(|_| Vec::with_capacity(cells.len())).collect();
     for cell in cells {
@@ -84,7 +84,7 @@ fn replayed(
         visits: &visits,
         conduct: conduct(plan, cell, intention),
         link: plan.conditions.link(),
-        seed: SEED,
+        seed: seed(recording, "link"),
     };
     let travel = travel(recording);
     let corner = travel.centre() + Planar::new(1.0, 1.0);

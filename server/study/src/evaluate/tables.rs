@@ -85,6 +85,13 @@ pub fn terminal(evaluation: &Evaluation) -> String {
     text += &foretold(evaluation);
     text += &bounds(evaluation);
     text += &goals(evaluation);
+    let as_recorded =
+        |(name, value): &(&&str, &f64)| **value == if **name == "acceleration_share" { 1.0 } else { 0.0 };
+    let harder = evaluation.conditions.iter().filter(|condition| !as_recorded(condition));
+    let harder: Vec<String> = harder.map(|(name, value)| format!("{name} {value:.4}")).collect();
+    if !harder.is_empty() {
+        let _ = writeln!(text, "not as recorded: {}", harder.join(", "));
+    }
     for LeftOut { file, recordings, because } in &evaluation.left_out {
         let _ = writeln!(text, "left out: {recordings} recordings of {file}: {because}");
     }

@@ -1,6 +1,8 @@
 use super::*;
 use crate::evaluate::{explain, terminal};
+use crate::replay::TrackingNoise;
 use covr_engine::intention::RuleName;
+use covr_engine::time::Span;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -204,4 +206,27 @@ fn the_limit_of_what_has_none_is_refused() {
     let beside = Plan { rules: vec![RuleChoice::Told, RuleChoice::Bound], ..bound };
     let one = evaluate(&sessions, &beside, &|_, _| ()).unwrap();
     assert!(one.rows.iter().all(|row| row.rule == "told") && one.left_out[0].recordings == 1, "{one:?}");
+}
+
+#[test]
+fn every_trial_has_losses_and_noise_of_its_own_and_the_same_each_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let subjects = subjects(folder.path());
+    let seeds: std::collections::BTreeSet<u64> = subjects
+        .reaches
+        .iter()
+        .flat_map(|reach| ["noise", "link"].map(|of| seed(&reach.recording, of)))
+        .collect();
+    assert_eq!(seeds.len(), 4);
+    // printf 'one/noise' | sha256sum
+    assert_eq!(seed(&subjects.reaches[0].recording, "noise"), 0xcd82eb958ef4a0f2);
+    let noise = TrackingNoise { position_m: 0.02, rotation_rad: 0.035 };
+    let conditions =
+        Conditions { loss: 0.05, noise, latency: Span::from_millis(100), ..Conditions::AS_RECORDED };
+    let harder = Plan { conditions, ..plan(1) };
+    let one = evaluate(&subjects, &harder, &|_, _| ()).unwrap();
+    assert_eq!(one, evaluate(&subjects, &Plan { threads: 2, ..harder }, &|_, _| ()).unwrap());
+    assert_ne!(one.rows, evaluate(&subjects, &plan(1), &|_, _| ()).unwrap().rows);
+    assert!(terminal(&one).contains("not as recorded: latency_s 0.1000, loss 0.0500, noise_m 0.0200"));
+    assert!(one.rows.iter().all(|row| row.violations == 0), "{:?}", one.rows);
 }
