@@ -4,19 +4,22 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clap::Args;
+use covr_engine::intention::IntentionParameters;
 use covr_engine::motion::MotionName;
 use covr_engine::time::Span;
 use covr_study::evaluate::{
-    Conditions, Draw, Evaluation, MachineKind, Objects, Plan, PlanProblem, Prior, RuleChoice,
-    SeparationChoice, Subjects, csv, evaluate, json, motion, terminal,
+    Conditions, Draw, Evaluation, MachineKind, Objects, Plan, PlanProblem, Prior, Progress, RuleChoice,
+    SeparationChoice, Subjects, csv, evaluate, json, motion, sweep, terminal,
 };
+use covr_study::fit::{Parameter, ParameterFile};
 use covr_study::replay::TrackingNoise;
 use covr_study::report::html;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::config::Config;
+use crate::fit::swept;
 
 /// Replay recorded reaches through engine and machine on virtual time, and say how often the column was there.
 #[derive(Debug, Clone, Args)]
@@ -57,6 +60,13 @@ pub struct Evaluate {
     /// The machine: simulated, ideal.
     #[arg(long, default_value = "simulated", value_parser = MachineKind::parse)]
     pub machine: MachineKind,
+    /// The rules' numbers from this file of parameters, as `covr fit` writes it; those of the server's default when not given.
+    #[arg(long)]
+    pub parameters: Option<PathBuf>,
+    /// So many values of one parameter from end to end, such as paper.distance_share=13, each as rows of its own. The rules
+    /// have to use it; when none are given, all that do.
+    #[arg(long, value_parser = swept)]
+    pub sweep: Option<(&'static Parameter, usize)>,
     /// Find out why each failed trial failed, by replaying it with one thing made right at a time.
     #[arg(long)]
     pub blame: bool,
@@ -97,13 +107,17 @@ pub fn run(options: &Evaluate) -> anyhow::Result<String> {
             "expected recordings (.jsonl, .jsonl.gz) or a folder of them; --synthetic 100 needs none",
         )?,
     };
-    let plan = plan(options);
+    let plan = plan(options)?;
     let bar = bar("trials");
     let started = Instant::now();
-    let mut evaluation: Evaluation = evaluate(&subjects, &plan, &|done, count| {
+    let progress = |done: usize, count: usize| {
         bar.set_length(count as u64);
         bar.set_position(done as u64);
-    })?;
+    };
+    let mut evaluation = match options.sweep {
+        Some((parameter, values)) => over(&subjects, &plan, parameter, values, &progress)?,
+        None => evaluate(&subjects, &plan, &progress)?,
+    };
     bar.finish_and_clear();
     evaluation.wall_secs = started.elapsed().as_secs_f64();
     let mut out = String::new();
@@ -122,10 +136,51 @@ pub fn run(options: &Evaluate) -> anyhow::Result<String> {
     Ok(if out.is_empty() { terminal(&evaluation) } else { out })
 }
 
-fn plan(options: &Evaluate) -> Plan {
+/// The plan with each value of the parameter.
+fn over(
+    subjects: &Subjects,
+    plan: &Plan,
+    parameter: &'static Parameter,
+    values: usize,
+    progress: Progress<'_>,
+) -> anyhow::Result<Evaluation> {
+    let base = &plan.intention;
+    let (values, intentions): (Vec<f64>, Vec<_>) = parameter.swept(base, values).into_iter().unzip();
+    let evaluations = sweep(subjects, plan, &intentions, progress)?;
+    let of_values = values.into_iter().zip(evaluations).collect();
+    Evaluation::of_sweep(parameter.name, of_values).context("--sweep: found no value, expected two or more")
+}
+
+fn plan(options: &Evaluate) -> anyhow::Result<Plan> {
     let people = Config::default().people;
-    Plan {
-        rules: if options.rules.is_empty() { RuleChoice::all() } else { options.rules.clone() },
+    let intention = match &options.parameters {
+        None => IntentionParameters::default(),
+        Some(path) => {
+            let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+            ParameterFile::read(&text, &path.display().to_string())?.parameters
+        }
+    };
+    let rules = match (&options.sweep, options.rules.is_empty()) {
+        (None, true) => RuleChoice::all(),
+        (Some((parameter, _)), true) => parameter.rules.iter().copied().map(RuleChoice::Rule).collect(),
+        (_, false) => options.rules.clone(),
+    };
+    if let Some((parameter, _)) = options.sweep {
+        let uses =
+            |rule: &RuleChoice| matches!(rule, RuleChoice::Rule(rule) if parameter.rules.contains(rule));
+        if let Some(other) = rules.iter().find(|rule| !uses(rule)) {
+            let those: Vec<&str> = parameter.rules.iter().map(|rule| rule.name()).collect();
+            bail!(
+                "--sweep {}: found rule `{}`, which does not use it, expected {}",
+                parameter.name,
+                other.name(),
+                those.join(", ")
+            );
+        }
+    }
+    Ok(Plan {
+        rules,
+        intention,
         motions: options.motion.clone(),
         separations: options.separation.clone(),
         objects: options.objects.clone(),
@@ -139,7 +194,7 @@ fn plan(options: &Evaluate) -> Plan {
         blames: options.blame,
         threads: options.threads,
         ..Plan::new(people.intention_rule, people.motion)
-    }
+    })
 }
 
 fn conditions(options: &Evaluate) -> Conditions {

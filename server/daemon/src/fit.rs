@@ -176,7 +176,7 @@ fn rule(text: &str) -> Result<RuleName, String> {
     RuleName::parse(text).ok_or_else(|| format!("expected one of {names}"))
 }
 
-fn swept(text: &str) -> Result<(&'static Parameter, usize), String> {
+pub(crate) fn swept(text: &str) -> Result<(&'static Parameter, usize), String> {
     let names: Vec<&str> = PARAMETERS.iter().map(|parameter| parameter.name).collect();
     let expected = || format!("expected NAME=VALUES with 2 to 1000 values and one of {}", names.join(", "));
     let (name, values) = text.split_once('=').ok_or_else(expected)?;

@@ -26,7 +26,7 @@ pub use plan::{
     Conditions, MachineKind, Objects, Plan, PlanProblem, Prior, RuleChoice, SeparationChoice, motion,
 };
 pub use reliability::{Bin, calibration_error};
-pub use row::{Evaluation, LeftOut, Row};
+pub use row::{Evaluation, LeftOut, Row, wilson};
 pub use run::{EvaluationProblem, Progress, evaluate, sweep};
 pub use subjects::Subjects;
-pub use tables::{csv, json, terminal};
+pub use tables::{csv, goals, json, terminal};

@@ -1,52 +1,132 @@
 //! An evaluation as one self-contained HTML page: plots as inline SVG, nothing from outside, no scripts; readable on
 //! paper, in light and in dark.
 
+mod bars;
+mod charts;
 mod plot;
+mod series;
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use crate::evaluate::{Evaluation, Row};
-use plot::{Line, Plot, Point, escaped};
+use crate::evaluate::{Evaluation, Row, goals};
+use charts::{Lines, before_reach, by_objects, by_value, count_words, lines, reliability};
+use plot::escaped;
+use series::{Palette, legend};
 
 /// The page.
 pub fn html(evaluation: &Evaluation) -> String {
+    let palette = Palette::of(evaluation);
+    let groups = groups(&evaluation.rows);
     let mut body = String::new();
-    for (group, rows) in groups(&evaluation.rows) {
-        let _ = write!(body, "<h2>{}</h2>\n<div class=\"plots\">", escaped(&group));
-        body += &by_objects(&rows).svg();
-        body += &before_reach(&rows, "Goal most probable, share of reaches", |row| &row.top1, |share| share)
-            .svg();
-        let title = "Probability of the goal, geometric mean";
-        body += &before_reach(&rows, title, |row| &row.log_loss, |loss| (-loss).exp()).svg();
-        body += "</div>\n";
-        body += &table(&rows);
+    let goals = goals(evaluation);
+    if !goals.is_empty() {
+        body += "<section><h2>Goals</h2><ul class=\"goals\">";
+        for goal in goals.lines() {
+            let class = if goal.starts_with("goal reached") { "reached" } else { "missed" };
+            let _ = write!(body, "<li class=\"{class}\">{}</li>", escaped(goal));
+        }
+        body += "</ul></section>\n";
     }
-    let limits: Vec<String> =
-        evaluation.limits.iter().map(|(name, value)| format!("{name} {value}")).collect();
+    if groups.len() > 1 {
+        body += "<nav><ul>";
+        for (number, (group, _)) in groups.iter().enumerate() {
+            let _ = write!(body, "<li><a href=\"#g{number}\">{}</a></li>", escaped(group));
+        }
+        body += "</ul></nav>\n";
+    }
+    for (number, (group, rows)) in groups.iter().enumerate() {
+        let _ = writeln!(body, "<section id=\"g{number}\"><h2>{}</h2>", escaped(group));
+        body += &section(evaluation, &palette, group, rows);
+        body += "</section>\n";
+    }
+    let words = |of: &std::collections::BTreeMap<&'static str, f64>| {
+        of.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", ")
+    };
     let (schema, version) = (escaped(evaluation.schema), escaped(evaluation.version));
     let trials: usize = evaluation.rows.iter().map(|row| row.trials).sum();
+    let left_out: String = evaluation
+        .left_out
+        .iter()
+        .map(|out| {
+            format!(
+                "<p>Left out: {} recordings of {}: {}.</p>\n",
+                out.recordings,
+                escaped(&out.file),
+                out.because
+            )
+        })
+        .collect();
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width\">\n<title>CoVR: evaluation</title>\n\
-         <style>{STYLE}</style>\n</head>\n<body>\n<h1>There before the hand</h1>\n\
-         <p>{trials} replays of recorded reaches, {:.0} s of people in {:.1} s. {schema}, CoVR {version}.</p>\n\
-         <p>{}</p>\n<p>A reach is served when the column's centre is within 10 cm of the goal's place at the reach, and \
-         was slower than 0.05 m/s for 0.2 s. Bars are Wilson's intervals at 95 %.</p>\n{body}</body>\n</html>\n",
+         <style>{STYLE}</style>\n</head>\n<body>\n<header><h1>There before the hand</h1>\n\
+         <p>{trials} replays of recorded reaches: {:.0} s of people in {:.1} s.</p>\n\
+         <p>A reach is served when the column's centre is within 10 cm of the goal's place at the reach, and was slower \
+         than 0.05 m/s for the 0.2 s before. Intervals are Wilson's, at 95 %.</p></header>\n{body}\
+         <footer>{left_out}<p>Limits: {}.</p><p>Conditions: {}.</p><p>{schema}, CoVR {version}.</p></footer>\n</body>\n</html>\n",
         evaluation.simulated_secs,
         evaluation.wall_secs,
-        escaped(&limits.join(", ")),
+        escaped(&words(&evaluation.limits)),
+        escaped(&words(&evaluation.conditions)),
     )
+}
+
+fn section(evaluation: &Evaluation, palette: &Palette, group: &str, rows: &[&Row]) -> String {
+    let (swept, plain): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|row| row.value.is_some());
+    let mut text = String::new();
+    let as_lines = lines(&plain, palette);
+    let in_pool = |row: &&Row| row.value.is_none() && group_of(row) == group;
+    let pooled: Vec<_> =
+        evaluation.pooled.iter().filter(in_pool).map(|row| (row, palette.series(row))).collect();
+    if pooled.len() > 1 {
+        text += &bars::served(&pooled);
+    }
+    if !as_lines.is_empty() {
+        text += &legend(&as_lines.iter().map(|(series, _)| series.clone()).collect::<Vec<_>>());
+        text += "<div class=\"plots\">";
+        text += &plots(&as_lines);
+        text += "</div>\n";
+    }
+    for (series, rows) in lines(&swept, palette) {
+        let Some(parameter) = rows.first().and_then(|row| row.parameter) else { continue };
+        let plot = by_value(parameter, &series.name, &rows);
+        let named = plot
+            .lines
+            .iter()
+            .map(|line| series::Series { name: line.name.clone(), style: line.style.clone() });
+        text += &legend(&named.collect::<Vec<_>>());
+        let _ = writeln!(text, "<div class=\"plots\">{}</div>", plot.svg());
+    }
+    let blamed: Vec<_> = pooled.into_iter().filter(|(row, _)| !row.blame.is_empty()).collect();
+    if !blamed.is_empty() {
+        text += &bars::failures(&blamed);
+    }
+    text + &table(rows)
+}
+
+fn plots(lines: &Lines<'_>) -> String {
+    let mut text = by_objects(lines).svg();
+    let stood = ["The column stood in place from then on", "share of all reaches"];
+    text += &before_reach(lines, stood, false, |row| &row.in_place, |share| share).svg();
+    let best = ["The goal was the most probable object", "share, more than one object"];
+    let probability = ["Probability of the goal", "geometric mean, more than one object"];
+    for plot in [
+        before_reach(lines, best, true, |row| &row.top1, |share| share),
+        before_reach(lines, probability, true, |row| &row.log_loss, |loss| (-loss).exp()),
+        reliability(lines),
+    ] {
+        if !plot.lines.is_empty() {
+            text += &plot.svg();
+        }
+    }
+    text
 }
 
 /// Rows of one file, task, prior, draw and v_h belong together; in the order of the table.
 fn groups(rows: &[Row]) -> Vec<(String, Vec<&Row>)> {
     let mut groups: Vec<(String, Vec<&Row>)> = Vec::new();
     for row in rows {
-        let Row { file, task, prior, draw, separation, v_h_mps, .. } = row;
-        let name = format!(
-            "{file}, task {task}, prior {prior}, draw {draw}, separation {separation}, v_h {v_h_mps} m/s"
-        );
+        let name = group_of(row);
         match groups.iter_mut().find(|(known, _)| *known == name) {
             Some((_, members)) => members.push(row),
             None => groups.push((name, vec![row])),
@@ -55,73 +135,17 @@ fn groups(rows: &[Row]) -> Vec<(String, Vec<&Row>)> {
     groups
 }
 
-/// Rows by rule and motion, in the order of the table.
-fn lines<'a>(rows: &[&'a Row]) -> Vec<(String, Vec<&'a Row>)> {
-    let mut lines: Vec<(String, Vec<&Row>)> = Vec::new();
-    for row in rows {
-        let mark = if row.default { " (default)" } else { "" };
-        let name = format!("{}, {}{mark}", row.rule, row.motion);
-        match lines.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, members)) => members.push(row),
-            None => lines.push((name, vec![row])),
-        }
-    }
-    lines
-}
-
-fn by_objects(rows: &[&Row]) -> Plot {
-    let mut counts: Vec<usize> = rows.iter().map(|row| row.objects).collect();
-    counts.sort_by_key(|&count| last_when_all(count));
-    counts.dedup();
-    let place = |objects: usize| counts.iter().position(|count| *count == objects).unwrap_or(0) as f64;
-    let name = |count: &usize| if *count == 0 { "all".to_owned() } else { count.to_string() };
-    let line = |(name, rows): (String, Vec<&Row>)| {
-        let points =
-            rows.iter().map(|row| Point { x: place(row.objects), y: row.success, bar: Some(row.ci95) });
-        Line { name, points: points.collect() }
-    };
-    Plot {
-        title: "Reaches served".into(),
-        across: "objects shown".into(),
-        ticks: counts.iter().enumerate().map(|(at, count)| (at as f64, name(count))).collect(),
-        lines: lines(rows).into_iter().map(line).collect(),
-    }
-}
-
-/// A figure at moments before the reach, averaged over the trials with more than one object: time runs to the right.
-fn before_reach(
-    rows: &[&Row],
-    title: &str,
-    figure: fn(&Row) -> &BTreeMap<String, f64>,
-    shown: fn(f64) -> f64,
-) -> Plot {
-    let moments: Vec<(f64, String)> =
-        crate::replay::LOOKS_BEFORE_REACH_SECS.iter().map(|secs| (-secs, format!("{secs:.1}"))).collect();
-    let line = |(name, rows): (String, Vec<&Row>)| {
-        let mean = |key: &str| {
-            let (mut sum, mut trials) = (0.0, 0.0);
-            for row in rows.iter().filter(|row| row.objects != 1) {
-                if let Some(value) = figure(row).get(key) {
-                    sum += value * row.trials as f64;
-                    trials += row.trials as f64;
-                }
-            }
-            (trials > 0.0).then(|| shown(sum / trials))
-        };
-        let point = |(x, key): &(f64, String)| mean(key).map(|y| Point { x: *x, y, bar: None });
-        Line { name, points: moments.iter().rev().filter_map(point).collect() }
-    };
-    let lines = lines(rows).into_iter().map(line).filter(|line| !line.points.is_empty()).collect();
-    let mut ticks = moments.clone();
-    ticks.reverse();
-    Plot { title: title.into(), across: "seconds before the touch".into(), ticks, lines }
+fn group_of(row: &Row) -> String {
+    let Row { file, task, prior, draw, separation, v_h_mps, .. } = row;
+    format!("{file}, task {task} · prior {prior} · draw {draw} · separation {separation} · v_h {v_h_mps} m/s")
 }
 
 fn table(rows: &[&Row]) -> String {
-    let mut text = String::from("<table>\n<tr>");
+    let mut text = String::from("<details><summary>Figures</summary><div class=\"wide\"><table>\n<tr>");
     let heads = [
         "rule",
         "motion",
+        "value",
         "objects",
         "trials",
         "served",
@@ -130,6 +154,7 @@ fn table(rows: &[&Row]) -> String {
         "at the reach, cm",
         "in place, s",
         "detected, s",
+        "calibration error",
         "violations",
         "stops",
     ];
@@ -140,7 +165,8 @@ fn table(rows: &[&Row]) -> String {
         let cells = [
             format!("{}{}", row.rule, if row.default { " (default)" } else { "" }),
             row.motion.to_owned(),
-            if row.objects == 0 { "all".to_owned() } else { row.objects.to_string() },
+            row.value.map_or_else(String::new, |value| format!("{value:.3}")),
+            count_words(row.objects),
             row.trials.to_string(),
             percent(row.success),
             format!("{} to {}", percent(row.ci95[0]), percent(row.ci95[1])),
@@ -148,6 +174,7 @@ fn table(rows: &[&Row]) -> String {
             format!("{:.2}", 100.0 * row.distance_at_reach_m),
             format!("{:.2}", row.in_place_before_reach_s),
             format!("{:.2}", row.detection_s),
+            row.calibration_error.map_or_else(String::new, |error| format!("{error:.3}")),
             row.violations.to_string(),
             row.stops.to_string(),
         ];
@@ -155,28 +182,16 @@ fn table(rows: &[&Row]) -> String {
         cells.iter().for_each(|cell| _ = write!(text, "<td>{}</td>", escaped(cell)));
         text += "</tr>\n";
     }
-    text + "</table>\n"
+    text + "</table></div></details>\n"
 }
 
-fn last_when_all(objects: usize) -> usize {
-    if objects == 0 { usize::MAX } else { objects }
-}
-
-/// The colours are Okabe and Ito's, which people with any colour vision tell apart; lines differ in their dashes too.
-const STYLE: &str = "
-:root { color-scheme: light dark; --ink: #1a1a1a; --paper: #fff; --faint: #ccc; --l0: #0072b2; --l1: #d55e00; --l2: #007a5a;
-  --l3: #a8427e; --l4: #8a6d00; --l5: #1f6f9e; --l6: #444; --l7: #7a3b00 }
-@media screen and (prefers-color-scheme: dark) { :root { --ink: #e8e8e8; --paper: #161616; --faint: #444; --l0: #56b4e9; --l1: #ff9340;
-  --l2: #2fc79a; --l3: #e291c0; --l4: #f0e442; --l5: #9fd3f2; --l6: #bbb; --l7: #d9a066 } }
-body { font: 15px/1.45 system-ui, sans-serif; color: var(--ink); background: var(--paper); margin: 2rem; max-width: 80rem }
-.plots { display: flex; flex-wrap: wrap; gap: 1rem } figure { margin: 0; break-inside: avoid } svg { width: 25rem; height: auto }
-text { fill: var(--ink); font-size: 11px } .axis { stroke: var(--ink) } .grid { stroke: var(--faint) } .line { fill: none; stroke-width: 1.8 }
-table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums } th, td { padding: .15rem .6rem; text-align: right;
-  border-bottom: 1px solid var(--faint) } th:first-child, td:first-child { text-align: left } tr { break-inside: avoid }
-";
+/// How the page looks.
+const STYLE: &str = include_str!("report/page.css");
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
     use crate::evaluate::Bin;
 
@@ -222,11 +237,12 @@ mod tests {
             in_time_came_true: BTreeMap::new(),
             in_time_brier: BTreeMap::new(),
             not_excluded: None,
+            parameter: None,
+            value: None,
         }
     }
 
-    fn page() -> String {
-        let rows = vec![row("paper", 2, 0.5), row("paper", 0, 0.25), row("told", 2, 1.0)];
+    fn page_of(rows: Vec<Row>, pooled: Vec<Row>) -> String {
         let limits = [("v_h_mps", 1.6)].into();
         html(&Evaluation {
             schema: "s",
@@ -237,8 +253,12 @@ mod tests {
             wall_secs: 1.0,
             simulated_secs: 9.0,
             rows,
-            pooled: Vec::new(),
+            pooled,
         })
+    }
+
+    fn page() -> String {
+        page_of(vec![row("paper", 2, 0.5), row("paper", 0, 0.25), row("told", 2, 1.0)], Vec::new())
     }
 
     #[test]
@@ -248,20 +268,59 @@ mod tests {
             assert!(!page.contains(outside), "{outside}");
         }
         assert!(page.contains("a&lt;b, task fixed") && !page.contains("a<b"));
-        assert_eq!(page.matches("<svg").count(), 3);
+        // Four plots over rules (a single bin is no line), and two swatches.
+        assert_eq!(page.matches("<figure>").count(), 4);
+        assert_eq!(page.matches("<svg").count(), 4 + 2);
         assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
-        assert!(page.contains("25.0 %") && page.contains("paper, proxy (default)"), "{page}");
+        assert!(page.contains("25.0 %") && page.contains("paper · proxy, the default"), "{page}");
         assert_eq!(page.matches("<tr>").count(), 4);
     }
 
     #[test]
+    fn failures_are_drawn_by_their_cause_and_success_with_its_interval() {
+        let blame = [("prediction", 3), ("route", 2)].into();
+        let pool = |rule, success| Row { blame, successes: 5, ..row(rule, 0, success) };
+        let page = page_of(vec![row("paper", 2, 0.5)], vec![pool("paper", 0.5)]);
+        assert!(page.contains("<title>prediction: 3 of 10 reaches</title>"), "{page}");
+        assert!(page.contains("<title>route: 2 of 10 reaches</title>") && page.contains("50.0 % of 10"));
+        // One rule needs no comparison.
+        assert!(!page.contains("objects together"));
+        let two = page_of(vec![row("paper", 2, 0.5)], vec![row("paper", 0, 0.5), row("told", 0, 0.9)]);
+        let (told, paper) =
+            (two.find(">told · proxy<").unwrap(), two.find(">paper · proxy, the default<").unwrap());
+        assert!(told < paper, "the best comes first");
+    }
+
+    #[test]
+    fn a_sweep_is_a_plot_of_its_own_and_in_no_other() {
+        let at = |value, objects, success, successes| Row {
+            parameter: Some("paper.distance_share"),
+            value: Some(value),
+            successes,
+            ..row("paper", objects, success)
+        };
+        let rows = vec![at(0.0, 1, 0.9, 9), at(0.0, 2, 0.5, 5), at(1.0, 1, 0.8, 8), at(1.0, 2, 0.3, 3)];
+        let page = page_of(rows, Vec::new());
+        assert_eq!(page.matches("<figure>").count(), 1);
+        assert!(page.contains("reaches served, by paper.distance_share"), "{page}");
+        // Of both numbers of objects together: 14 and 11 of 20.
+        assert!(
+            page.contains("all of these together: 70.0 %") && page.contains("all of these together: 55.0 %")
+        );
+    }
+
+    #[test]
     fn the_probability_is_the_one_whose_logarithm_was_lost() {
-        let paper = row("paper", 2, 0.5);
-        let plot = before_reach(&[&paper], "t", |row| &row.log_loss, |loss| (-loss).exp());
+        let evaluation_rows = [row("paper", 2, 0.5), row("paper", 1, 0.5)];
+        let of = |rows: &[&Row], figure: fn(&Row) -> &BTreeMap<String, f64>, guessed| {
+            let lines = lines(rows, &Palette::of_rows(rows));
+            before_reach(&lines, ["t", "u"], guessed, figure, |loss| (-loss).exp())
+        };
+        let plot = of(&[&evaluation_rows[0]], |row| &row.log_loss, true);
         let points: Vec<_> = plot.lines[0].points.iter().map(|p| (p.x, p.y)).collect();
         assert_eq!(points, [(-1.0, 0.5), (-0.0, 1.0)]);
-        // With the goal alone nothing was predicted.
-        let alone = row("paper", 1, 0.5);
-        assert!(before_reach(&[&alone], "t", |row| &row.top1, |x| x).lines.is_empty());
+        // With the goal alone nothing was predicted, but the column stood there all the same.
+        assert!(of(&[&evaluation_rows[1]], |row| &row.top1, true).lines.is_empty());
+        assert_eq!(of(&[&evaluation_rows[1]], |row| &row.in_place, false).lines.len(), 1);
     }
 }

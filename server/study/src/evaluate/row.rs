@@ -129,6 +129,30 @@ pub struct Row {
     pub blame: BTreeMap<&'static str, u64>,
     /// Of the rule `bound` alone: trials that were found to be possible, and those of which it is not known.
     pub not_excluded: Option<usize>,
+    /// The parameter of the rule that was swept, `group.name`; null where none was.
+    pub parameter: Option<&'static str>,
+    /// Its value in this row.
+    pub value: Option<f64>,
+}
+
+impl Evaluation {
+    /// One evaluation for each value of a parameter, as one table: the rows say which value they are of.
+    pub fn of_sweep(parameter: &'static str, of_values: Vec<(f64, Self)>) -> Option<Self> {
+        let mark = |rows: &mut Vec<Row>, value| {
+            rows.iter_mut().for_each(|row| (row.parameter, row.value) = (Some(parameter), Some(value)));
+        };
+        let marked = of_values.into_iter().map(|(value, mut evaluation)| {
+            mark(&mut evaluation.rows, value);
+            mark(&mut evaluation.pooled, value);
+            evaluation
+        });
+        marked.reduce(|mut all, one| {
+            all.simulated_secs += one.simulated_secs;
+            all.rows.extend(one.rows);
+            all.pooled.extend(one.pooled);
+            all
+        })
+    }
 }
 
 /// A trial, and why it failed if it did and somebody looked.
@@ -245,6 +269,8 @@ impl Row {
             in_time_brier: said.brier,
             blame,
             not_excluded,
+            parameter: None,
+            value: None,
         }
     }
 }
@@ -299,7 +325,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Wilson's score interval at 95 % (Wilson 1927).
-pub(super) fn wilson(successes: usize, trials: usize) -> [f64; 2] {
+pub fn wilson(successes: usize, trials: usize) -> [f64; 2] {
     if trials == 0 {
         return [0.0, 1.0];
     }

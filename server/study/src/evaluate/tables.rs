@@ -54,9 +54,10 @@ pub fn terminal(evaluation: &Evaluation) -> String {
         let rows: Vec<&Row> = evaluation.rows.iter().filter(|row| line(row) == words).collect();
         let pool = evaluation.pooled.iter().find(|row| line(row) == words);
         let Some(whole) = pool.or(rows.first().copied()) else { continue };
-        let Line { file, task, rule, motion, separation, prior, draw } = words;
+        let Line { file, task, rule, motion, separation, prior, draw, value } = words;
         let mark = if whole.default { "*" } else { "" };
-        let rule = format!("{rule}{mark}");
+        let value = value.map_or_else(String::new, |value| format!(" {value:.3}"));
+        let rule = format!("{rule}{mark}{value}");
         let _ =
             write!(text, "{file:<16} {task:<8} {rule:<18} {motion:<8} {separation:<4} {prior:<6} {draw:<9}");
         for count in &counts {
@@ -114,6 +115,7 @@ struct Line<'a> {
     separation: &'a str,
     prior: &'a str,
     draw: &'a str,
+    value: Option<f64>,
 }
 
 fn line(row: &Row) -> Line<'_> {
@@ -125,6 +127,7 @@ fn line(row: &Row) -> Line<'_> {
         separation: row.separation,
         prior: row.prior,
         draw: row.draw,
+        value: row.value,
     }
 }
 
@@ -133,7 +136,7 @@ fn causes(evaluation: &Evaluation) -> String {
     let mut text = String::new();
     for row in evaluation.pooled.iter().filter(|row| !row.blame.is_empty()) {
         let failed = row.trials - row.successes;
-        let Line { file, task, rule, motion, separation, prior, draw } = line(row);
+        let Line { file, task, rule, motion, separation, prior, draw, .. } = line(row);
         let _ = write!(
             text,
             "why {file} {task} {rule} {motion} {separation} {prior} {draw} failed {failed} times:"
@@ -149,9 +152,9 @@ fn causes(evaluation: &Evaluation) -> String {
 }
 
 /// The goals that the pools of a file can be held against, rule on.
-fn goals(evaluation: &Evaluation) -> String {
+pub fn goals(evaluation: &Evaluation) -> String {
     let mut text = String::new();
-    let on = |row: &&Row| row.separation == "on" && row.v_h_mps == GOALS_V_H_MPS;
+    let on = |row: &&Row| row.separation == "on" && row.v_h_mps == GOALS_V_H_MPS && row.value.is_none();
     for row in evaluation.whole_files().filter(on) {
         let least = match (row.rule, row.default, row.prior, row.draw) {
             ("told", ..) => Some(98.5),

@@ -95,16 +95,12 @@ pub fn sweep(
     values: usize,
     told: &dyn Fn(),
 ) -> Vec<(f64, Loss)> {
-    let share = |index: usize| index as f64 / values.saturating_sub(1).max(1) as f64;
-    let at = |index: usize| {
-        let mut parameters = base.clone();
-        let value = parameter.at_share(share(index));
-        parameter.set(&mut parameters, value);
+    let at = |(value, parameters): (f64, IntentionParameters)| {
         let loss = objective.loss(&parameters);
         told();
         (value, loss)
     };
-    (0..values).map(at).collect()
+    parameter.swept(base, values).into_iter().map(at).collect()
 }
 
 impl Tally {

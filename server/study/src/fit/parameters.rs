@@ -254,6 +254,18 @@ impl Parameter {
         value.clamp(self.least, self.most)
     }
 
+    /// So many values from end to end, each with all parameters, the others as in `base`.
+    pub fn swept(&self, base: &IntentionParameters, values: usize) -> Vec<(f64, IntentionParameters)> {
+        let last = values.saturating_sub(1).max(1) as f64;
+        let at = |index: usize| {
+            let mut parameters = base.clone();
+            let value = self.at_share(index as f64 / last);
+            self.set(&mut parameters, value);
+            (value, parameters)
+        };
+        (0..values).map(at).collect()
+    }
+
     /// Where in its range a value lies, 0 to 1.
     pub fn share_of(&self, value: f64) -> f64 {
         let share = match self.scale {

@@ -230,3 +230,25 @@ fn every_trial_has_losses_and_noise_of_its_own_and_the_same_each_time() {
     assert!(terminal(&one).contains("not as recorded: latency_s 0.1000, loss 0.0500, noise_m 0.0200"));
     assert!(one.rows.iter().all(|row| row.violations == 0), "{:?}", one.rows);
 }
+
+#[test]
+fn a_sweep_is_what_one_value_after_the_other_would_give() {
+    let folder = tempfile::tempdir().unwrap();
+    let subjects = subjects(folder.path());
+    let w = crate::fit::Parameter::named("paper.distance_share").unwrap();
+    let base = Plan { rules: vec![RuleChoice::Rule(RuleName::Paper)], ..plan(2) };
+    let (values, intentions): (Vec<f64>, Vec<_>) = w.swept(&base.intention, 3).into_iter().unzip();
+    assert_eq!(values, [0.0, 0.5, 1.0]);
+    let all = sweep(&subjects, &base, &intentions, &|_, _| ()).unwrap();
+    for (intention, evaluation) in intentions.iter().zip(&all) {
+        let alone = Plan { intention: intention.clone(), ..base.clone() };
+        assert_eq!(*evaluation, evaluate(&subjects, &alone, &|_, _| ()).unwrap());
+    }
+    let rows = all[0].rows.len();
+    let one = Evaluation::of_sweep(w.name, values.into_iter().zip(all).collect()).unwrap();
+    assert_eq!(
+        (one.rows.len(), one.rows[rows].value, one.rows[rows].parameter),
+        (3 * rows, Some(0.5), Some(w.name))
+    );
+    assert!(terminal(&one).contains("paper* 0.500") || terminal(&one).contains("paper 0.500"));
+}
