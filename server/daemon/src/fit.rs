@@ -5,17 +5,19 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use anyhow::{Context, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use covr_engine::intention::{IntentionParameters, RuleName};
-use covr_study::evaluate::Objects;
+use covr_engine::motion::MotionName;
+use covr_study::evaluate::{MachineKind, Objects, Plan, RuleChoice, Subjects, motion};
 use covr_study::fit::{
-    BeliefLoss, Fit as Found, Fitted, FittedOn, Objective, PARAMETERS, Parameter, ParameterFile, Tally, fit,
-    of_rule, sweep,
+    BeliefLoss, FailureLoss, Fit as Found, Fitted, FittedOn, Objective, PARAMETERS, Parameter, ParameterFile,
+    Tally, fit, of_rule, sweep,
 };
 use covr_study::trace::{Recording, Recordings, trace_files};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::clock;
+use crate::config::Config;
 
 /// Fit the parameters of an intention rule to recorded people, and judge them on people left out.
 #[derive(Debug, Clone, Args)]
@@ -26,6 +28,16 @@ pub struct Fit {
     /// The rule.
     #[arg(long, value_parser = rule)]
     pub rule: RuleName,
+    /// What is made better: the log loss of the goal (log-loss; poses and rule alone, quick), or the share of reaches that the
+    /// column is in place for (success; the whole loop, slow).
+    #[arg(long, value_enum, default_value_t = Aim::LogLoss)]
+    pub objective: Aim,
+    /// The motion, for the objective success; the server's default when not given.
+    #[arg(long, value_parser = motion)]
+    pub motion: Option<MotionName>,
+    /// The machine, for the objective success: simulated, ideal.
+    #[arg(long, default_value = "simulated", value_parser = MachineKind::parse)]
+    pub machine: MachineKind,
     /// Numbers of objects shown: 1, 2, ..., all.
     #[arg(long, value_delimiter = ',', default_value = "1,2,3,4,5,all", value_parser = Objects::parse)]
     pub objects: Vec<Objects>,
@@ -49,16 +61,61 @@ pub struct Fit {
     pub threads: usize,
 }
 
+/// What is made better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Aim {
+    /// The log loss of the goal.
+    LogLoss,
+    /// The share of reaches served.
+    Success,
+}
+
 /// The report: what goes to standard output. The file is written on the way.
 pub fn run(options: &Fit) -> anyhow::Result<String> {
     let (recordings, files) = read(options)?;
-    let objective = BeliefLoss::new(&recordings, options.rule, &options.objects, options.threads)?;
     let bar = bar();
+    match options.objective {
+        Aim::LogLoss => {
+            let loss = BeliefLoss::new(&recordings, options.rule, &options.objects, options.threads)?;
+            report_of(options, &loss, &recordings, files, &bar)
+        }
+        Aim::Success => {
+            let subjects = Subjects::read(&options.paths)?;
+            let plan = plan(options);
+            let progress =
+                |done: usize, count: usize| bar.set_message(format!("{done} of {count} replays of the next"));
+            let loss = FailureLoss::new(&subjects, &plan, &progress);
+            report_of(options, &loss, &recordings, files, &bar)
+        }
+    }
+}
+
+fn plan(options: &Fit) -> Plan {
+    let people = Config::default().people;
+    Plan {
+        rules: vec![RuleChoice::Rule(options.rule)],
+        motions: vec![options.motion.unwrap_or(people.motion)],
+        objects: options.objects.clone(),
+        tasks: options.task.clone(),
+        people: options.people.clone(),
+        machine: options.machine,
+        threads: options.threads,
+        ..Plan::new(people.intention_rule, people.motion)
+    }
+}
+
+fn report_of(
+    options: &Fit,
+    objective: &dyn Objective,
+    recordings: &[Recording],
+    files: Vec<FittedOn>,
+    bar: &ProgressBar,
+) -> anyhow::Result<String> {
     let told = || bar.inc(1);
     if let Some((parameter, values)) = options.sweep {
-        let swept = sweep(&objective, &IntentionParameters::default(), parameter, values, &told);
+        let swept = sweep(objective, &IntentionParameters::default(), parameter, values)?;
         bar.finish_and_clear();
-        let mut text = format!("{:>12}  {}\n", parameter.name, objective.name());
+        let mut text = format!("{:>12}  {}\n", parameter.name, objective.figure());
         for (value, loss) in swept {
             let total = loss.values().fold(Tally::default(), |sum, one| sum.with(*one));
             let _ = writeln!(text, "{value:>12.4}  {:.4}", total.mean());
@@ -77,14 +134,14 @@ pub fn run(options: &Fit) -> anyhow::Result<String> {
             fittable.join(", ")
         );
     }
-    let found = fit(&objective, options.rule, options.folds, &told);
+    let found = fit(objective, options.rule, options.folds, &told)?;
     bar.finish_and_clear();
     if let Some(out) = &options.out {
-        let fitted = Some(fitted(&found, &objective, &recordings, files));
+        let fitted = Some(fitted(&found, objective, recordings, files));
         let file = ParameterFile { rule: options.rule, parameters: found.parameters.clone(), fitted };
         std::fs::write(out, file.text()?).with_context(|| out.display().to_string())?;
     }
-    Ok(report(options.rule, &objective, &found))
+    Ok(report(options.rule, objective, &found))
 }
 
 fn read(options: &Fit) -> anyhow::Result<(Vec<Recording>, Vec<FittedOn>)> {
@@ -124,6 +181,7 @@ fn fitted(
     Fitted {
         at: clock::wall_now(),
         version: env!("CARGO_PKG_VERSION").into(),
+        command: command(),
         objective: objective.name().into(),
         before: found.before,
         in_sample: found.in_sample,
@@ -134,8 +192,14 @@ fn fitted(
     }
 }
 
+/// As it was given, but for the folder that the program lies in.
+fn command() -> String {
+    let words = std::env::args().skip(1);
+    std::iter::once("covr".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}
+
 fn report(rule: RuleName, objective: &dyn Objective, found: &Found) -> String {
-    let mut text = format!("{}, {} by default {:.4}\n", rule.name(), objective.name(), found.before);
+    let mut text = format!("{}, {}: by default {:.4}\n", rule.name(), objective.figure(), found.before);
     let _ = writeln!(text, "fitted to everybody         {:.4}", found.in_sample);
     match found.left_out {
         Some(left_out) => _ = writeln!(text, "on people left out          {left_out:.4}"),
@@ -167,7 +231,7 @@ fn bar() -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let style = ProgressStyle::with_template("{spinner} {pos} sets of parameters, {elapsed}");
+    let style = ProgressStyle::with_template("{spinner} {pos} sets of parameters, {elapsed} {msg}");
     ProgressBar::new_spinner().with_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()))
 }
 
@@ -202,6 +266,9 @@ mod tests {
         Fit {
             paths: vec![file],
             rule,
+            objective: Aim::LogLoss,
+            motion: None,
+            machine: MachineKind::Ideal,
             objects: vec![Objects::Count(2)],
             task: Vec::new(),
             people: Vec::new(),
@@ -223,6 +290,27 @@ mod tests {
         assert_eq!((fitted.people, fitted.folds), (vec!["u".to_owned(), "v".to_owned()], 2));
         assert_eq!((fitted.files[0].name.as_str(), fitted.files[0].sha256.len()), ("made_reach.jsonl", 64));
         assert!(file.parameters.paper.distance_share > 0.5 && fitted.in_sample < fitted.before);
+    }
+
+    #[test]
+    fn success_is_fitted_through_the_whole_loop_and_both_figures_are_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let options = Fit {
+            objective: Aim::Success,
+            motion: Some(MotionName::Proxy),
+            ..options(folder.path(), RuleName::PaperBest)
+        };
+        let report = run(&options).unwrap();
+        for said in ["share of reaches not served: by default", "fitted to everybody", "on people left out"] {
+            assert!(report.contains(said), "{said:?} is not in {report}");
+        }
+        let text = std::fs::read_to_string(folder.path().join("out.toml")).unwrap();
+        let fitted = ParameterFile::read(&text, "out.toml").unwrap().fitted.unwrap();
+        assert_eq!(fitted.objective, "success");
+        assert!(fitted.command.starts_with("covr ") && fitted.left_out.is_some(), "{fitted:?}");
+        let sweep = Some((Parameter::named("paper.distance_share").unwrap(), 3));
+        let swept = run(&Fit { sweep, out: None, ..options }).unwrap();
+        assert_eq!(swept.lines().count(), 4, "{swept}");
     }
 
     #[test]

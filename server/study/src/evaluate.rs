@@ -27,6 +27,6 @@ pub use plan::{
 };
 pub use reliability::{Bin, calibration_error};
 pub use row::{Evaluation, LeftOut, Row, wilson};
-pub use run::{EvaluationProblem, Progress, evaluate, sweep};
+pub use run::{EvaluationProblem, Progress, evaluate, failures, sweep};
 pub use subjects::Subjects;
 pub use tables::{csv, goals, json, terminal};

@@ -9,8 +9,10 @@ mod file;
 mod folds;
 mod parameters;
 mod search;
+mod success;
 
 pub use belief::BeliefLoss;
 pub use file::{FileProblem, Fitted, FittedOn, ParameterFile};
 pub use folds::{Fit, Fold, Loss, Objective, Tally, fit, sweep};
 pub use parameters::{PARAMETERS, Parameter, Scale, of_rule};
+pub use success::FailureLoss;

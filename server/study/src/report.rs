@@ -9,9 +9,9 @@ mod series;
 use std::fmt::Write;
 
 use crate::evaluate::{Evaluation, Row, goals};
-use charts::{Lines, before_reach, by_objects, by_value, count_words, lines, reliability};
+use charts::{Lines, before_reach, by_objects, by_value, count_words, lines, reliability, short};
 use plot::escaped;
-use series::{Palette, legend};
+use series::{Palette, Series, legend};
 
 /// The page.
 pub fn html(evaluation: &Evaluation) -> String {
@@ -22,7 +22,8 @@ pub fn html(evaluation: &Evaluation) -> String {
     if !goals.is_empty() {
         body += "<section><h2>Goals</h2><ul class=\"goals\">";
         for goal in goals.lines() {
-            let class = if goal.starts_with("goal reached") { "reached" } else { "missed" };
+            let goal = goal.trim_start_matches("goal ");
+            let class = if goal.starts_with("reached") { "reached" } else { "missed" };
             let _ = write!(body, "<li class=\"{class}\">{}</li>", escaped(goal));
         }
         body += "</ul></section>\n";
@@ -40,7 +41,7 @@ pub fn html(evaluation: &Evaluation) -> String {
         body += "</section>\n";
     }
     let words = |of: &std::collections::BTreeMap<&'static str, f64>| {
-        of.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", ")
+        of.iter().map(|(name, value)| format!("{name} {}", short(*value))).collect::<Vec<_>>().join(", ")
     };
     let (schema, version) = (escaped(evaluation.schema), escaped(evaluation.version));
     let trials: usize = evaluation.rows.iter().map(|row| row.trials).sum();
@@ -87,15 +88,20 @@ fn section(evaluation: &Evaluation, palette: &Palette, group: &str, rows: &[&Row
         text += &plots(&as_lines);
         text += "</div>\n";
     }
+    let mut sweeps = String::new();
+    let mut named: Vec<Series> = Vec::new();
     for (series, rows) in lines(&swept, palette) {
         let Some(parameter) = rows.first().and_then(|row| row.parameter) else { continue };
         let plot = by_value(parameter, &series.name, &rows);
-        let named = plot
-            .lines
-            .iter()
-            .map(|line| series::Series { name: line.name.clone(), style: line.style.clone() });
-        text += &legend(&named.collect::<Vec<_>>());
-        let _ = writeln!(text, "<div class=\"plots\">{}</div>", plot.svg());
+        let of_lines =
+            plot.lines.iter().map(|line| Series { name: line.name.clone(), style: line.style.clone() });
+        // Every rule is swept over the same numbers of objects.
+        named = of_lines.collect();
+        sweeps += &plot.svg();
+    }
+    if !sweeps.is_empty() {
+        text += &legend(&named);
+        let _ = writeln!(text, "<div class=\"plots\">{sweeps}</div>");
     }
     let blamed: Vec<_> = pooled.into_iter().filter(|(row, _)| !row.blame.is_empty()).collect();
     if !blamed.is_empty() {
@@ -302,7 +308,10 @@ mod tests {
         let rows = vec![at(0.0, 1, 0.9, 9), at(0.0, 2, 0.5, 5), at(1.0, 1, 0.8, 8), at(1.0, 2, 0.3, 3)];
         let page = page_of(rows, Vec::new());
         assert_eq!(page.matches("<figure>").count(), 1);
-        assert!(page.contains("reaches served, by paper.distance_share"), "{page}");
+        assert!(
+            page.contains("Reaches served: paper · proxy") && page.contains(">paper.distance_share<"),
+            "{page}"
+        );
         // Of both numbers of objects together: 14 and 11 of 20.
         assert!(
             page.contains("all of these together: 70.0 %") && page.contains("all of these together: 55.0 %")

@@ -80,35 +80,8 @@ pub fn sweep(
     intentions: &[IntentionParameters],
     progress: Progress<'_>,
 ) -> Result<Vec<Evaluation>, EvaluationProblem> {
-    let cells = cells(plan);
-    let chosen = |recording: &Recording| is_chosen(recording, plan);
-    let reaches = subjects.reaches.iter().filter(|reach| chosen(&reach.recording)).map(Job::Reach);
-    let sessions = subjects.sessions.iter().filter(|session| chosen(&session.recording)).map(Job::Session);
-    let jobs: Vec<Job<'_>> = reaches.chain(sessions).collect();
-    if jobs.is_empty() {
-        return Err(EvaluationProblem::Nothing);
-    }
-    let sessions = jobs.iter().filter(|job| matches!(job, Job::Session(_))).count();
-    bounded::check(plan, sessions == jobs.len())?;
-    let done = AtomicUsize::new(0);
-    let replays = cells.len() * intentions.len();
-    let outcomes = parallel::each(jobs.len(), plan.threads, |number| {
-        let outcomes = with_each(plan, intentions, &cells, &jobs[number]);
-        progress(done.fetch_add(replays, Ordering::Relaxed) + replays, replays * jobs.len());
-        outcomes
-    });
-    let outcomes = outcomes.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let mut of_each: Vec<Vec<Case<'_>>> = intentions.iter().map(|_| Vec::new()).collect();
-    for (job, outcomes) in jobs.iter().zip(outcomes) {
-        let (file, recording) = match job {
-            Job::Reach(reach) => (&reach.file, &reach.recording),
-            Job::Session(session) => (&session.file, &session.recording),
-        };
-        for (of_one, cases) in of_each.iter_mut().zip(outcomes) {
-            let case = |by_cell| Case { file, task: task(recording), by_cell };
-            of_one.extend(cases.into_iter().map(case));
-        }
-    }
+    let (cells, jobs) = (cells(plan), jobs(subjects, plan)?);
+    let of_each = cases(&jobs, plan, &cells, intentions, progress)?;
     let evaluation = |cases: Vec<Case<'_>>| Evaluation {
         schema: "covr.evaluation.v1",
         version: env!("CARGO_PKG_VERSION"),
@@ -123,6 +96,72 @@ pub fn sweep(
     Ok(of_each.into_iter().map(evaluation).collect())
 }
 
+/// With each of these numbers of the rules, for every person: how many reaches failed, and of how many.
+pub fn failures(
+    subjects: &Subjects,
+    plan: &Plan,
+    intentions: &[IntentionParameters],
+    progress: Progress<'_>,
+) -> Result<Vec<BTreeMap<String, [usize; 2]>>, EvaluationProblem> {
+    let (cells, jobs) = (cells(plan), jobs(subjects, plan)?);
+    let of_each = cases(&jobs, plan, &cells, intentions, progress)?;
+    let by_person = |cases: Vec<Case<'_>>| {
+        let mut people: BTreeMap<String, [usize; 2]> = BTreeMap::new();
+        for case in cases {
+            let [failed, trials] = people.entry(case.person.to_owned()).or_default();
+            for judged in case.by_cell.iter().flatten() {
+                *failed += usize::from(!judged.outcome.success);
+                *trials += 1;
+            }
+        }
+        people
+    };
+    Ok(of_each.into_iter().map(by_person).collect())
+}
+
+fn jobs<'a>(subjects: &'a Subjects, plan: &Plan) -> Result<Vec<Job<'a>>, EvaluationProblem> {
+    let chosen = |recording: &Recording| is_chosen(recording, plan);
+    let reaches = subjects.reaches.iter().filter(|reach| chosen(&reach.recording)).map(Job::Reach);
+    let sessions = subjects.sessions.iter().filter(|session| chosen(&session.recording)).map(Job::Session);
+    let jobs: Vec<Job<'_>> = reaches.chain(sessions).collect();
+    if jobs.is_empty() {
+        return Err(EvaluationProblem::Nothing);
+    }
+    let sessions = jobs.iter().filter(|job| matches!(job, Job::Session(_))).count();
+    bounded::check(plan, sessions == jobs.len())?;
+    Ok(jobs)
+}
+
+/// For each of the rules' numbers every reach, in the order of the jobs whoever did them.
+fn cases<'a>(
+    jobs: &[Job<'a>],
+    plan: &Plan,
+    cells: &[Cell],
+    intentions: &[IntentionParameters],
+    progress: Progress<'_>,
+) -> Result<Vec<Vec<Case<'a>>>, EvaluationProblem> {
+    let done = AtomicUsize::new(0);
+    let replays = cells.len() * intentions.len();
+    let outcomes = parallel::each(jobs.len(), plan.threads, |number| {
+        let outcomes = with_each(plan, intentions, cells, &jobs[number]);
+        progress(done.fetch_add(replays, Ordering::Relaxed) + replays, replays * jobs.len());
+        outcomes
+    });
+    let outcomes = outcomes.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let mut of_each: Vec<Vec<Case<'_>>> = intentions.iter().map(|_| Vec::new()).collect();
+    for (job, outcomes) in jobs.iter().zip(outcomes) {
+        let (file, recording) = match job {
+            Job::Reach(reach) => (&reach.file, &reach.recording),
+            Job::Session(session) => (&session.file, &session.recording),
+        };
+        for (of_one, cases) in of_each.iter_mut().zip(outcomes) {
+            let case = |by_cell| Case { file, person: &recording.user, task: task(recording), by_cell };
+            of_one.extend(cases.into_iter().map(case));
+        }
+    }
+    Ok(of_each)
+}
+
 /// What a thread takes at once.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Job<'a> {
@@ -134,6 +173,7 @@ pub(super) enum Job<'a> {
 #[derive(Debug, Clone)]
 pub(super) struct Case<'a> {
     pub file: &'a str,
+    pub person: &'a str,
     pub task: &'a str,
     pub by_cell: Vec<Option<Judged>>,
 }

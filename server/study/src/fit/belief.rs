@@ -10,7 +10,7 @@ use covr_engine::safety::parameters::Parameters;
 use covr_engine::time::{Span, Time};
 
 use super::folds::{Loss, Objective, Tally};
-use crate::evaluate::{Draw, Objects};
+use crate::evaluate::{Draw, EvaluationProblem, Objects};
 use crate::parallel;
 use crate::replay::{LOOKS_BEFORE_REACH_SECS, TrialProblem};
 use crate::trace::Recording;
@@ -61,6 +61,16 @@ impl Objective for BeliefLoss {
         "log-loss"
     }
 
+    fn figure(&self) -> &'static str {
+        "log loss of the goal"
+    }
+
+    fn losses(&self, parameters: &[IntentionParameters]) -> Result<Vec<Loss>, EvaluationProblem> {
+        Ok(parameters.iter().map(|parameters| self.loss(parameters)).collect())
+    }
+}
+
+impl BeliefLoss {
     fn loss(&self, parameters: &IntentionParameters) -> Loss {
         let tallies = parallel::each(self.reaches.len(), self.threads, |index| {
             self.reaches[index].tally(self.rule, parameters)
@@ -182,7 +192,7 @@ mod tests {
     #[test]
     fn where_distance_tells_more_distance_is_given_its_weight() {
         let loss = BeliefLoss::new(&recordings(), RuleName::Paper, &[Objects::Count(2)], 1).unwrap();
-        let fitted = fit(&loss, RuleName::Paper, 3, &|| ());
+        let fitted = fit(&loss, RuleName::Paper, 3, &|| ()).unwrap();
         assert!(fitted.parameters.paper.distance_share > 0.9, "{fitted:?}");
         assert!(fitted.in_sample < fitted.before);
         // Three people who are alike: what was left out is as good.

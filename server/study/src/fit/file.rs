@@ -32,6 +32,8 @@ pub struct Fitted {
     pub at: String,
     /// By which version of the program.
     pub version: String,
+    /// By which command.
+    pub command: String,
     /// What was made least.
     pub objective: String,
     /// Mean loss with the default parameters.
@@ -240,6 +242,7 @@ mod tests {
         let fitted = Fitted {
             at: "2026-11-26T14:00:00Z".into(),
             version: "0.1.0".into(),
+            command: "covr fit reach.jsonl.gz --rule paper-best".into(),
             objective: "log-loss".into(),
             before: 0.75,
             in_sample: 0.5,

@@ -6,6 +6,7 @@ use covr_engine::intention::{IntentionParameters, RuleName};
 
 use super::parameters::{Parameter, of_rule};
 use super::search::least;
+use crate::evaluate::EvaluationProblem;
 
 /// What one person lost, and over how many cases.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -21,11 +22,14 @@ pub type Loss = BTreeMap<String, Tally>;
 
 /// What is made least.
 pub trait Objective {
-    /// Its name in files and reports.
+    /// Its name in files and on the command line.
     fn name(&self) -> &'static str;
 
-    /// What everybody loses with these parameters. The people are always the same.
-    fn loss(&self, parameters: &IntentionParameters) -> Loss;
+    /// What its mean loss is, in reports.
+    fn figure(&self) -> &'static str;
+
+    /// What everybody loses with each of these parameters. The people are always the same.
+    fn losses(&self, parameters: &[IntentionParameters]) -> Result<Vec<Loss>, EvaluationProblem>;
 }
 
 /// One fold: fitted to all but the people left out.
@@ -58,33 +62,38 @@ pub struct Fit {
 
 /// Fit a rule's parameters; `folds` groups of people are left out in turn, 0 for none. `told` hears of every
 /// evaluation.
-pub fn fit(objective: &dyn Objective, rule: RuleName, folds: usize, told: &dyn Fn()) -> Fit {
+pub fn fit(
+    objective: &dyn Objective,
+    rule: RuleName,
+    folds: usize,
+    told: &dyn Fn(),
+) -> Result<Fit, EvaluationProblem> {
     let parameters: Vec<&Parameter> = of_rule(rule).collect();
     let mut known = Known { objective, parameters: &parameters, known: Vec::new(), told };
     let start: Vec<f64> = parameters.iter().map(|p| p.share_of(p.default())).collect();
-    let people: Vec<String> = known.at(&start).keys().cloned().collect();
-    let everybody = known.fitted(&start, &|_| true);
-    let before = mean(known.at(&start), &|_| true);
+    let people: Vec<String> = known.at(&start)?.keys().cloned().collect();
+    let everybody = known.fitted(&start, &|_| true)?;
+    let before = mean(known.at(&start)?, &|_| true);
     let groups = if folds < 2 { 0 } else { folds.min(people.len()) };
     let mut parts = Vec::new();
     let mut outside = Tally::default();
     for group in 0..groups {
         let left_out: Vec<String> = people.iter().skip(group).step_by(groups).cloned().collect();
         let others = |person: &str| !left_out.iter().any(|one| one == person);
-        let shares = known.fitted(&start, &others);
-        let in_sample = mean(known.at(&shares), &others);
-        let theirs = total(known.at(&shares), &|person| !others(person));
+        let shares = known.fitted(&start, &others)?;
+        let in_sample = mean(known.at(&shares)?, &others);
+        let theirs = total(known.at(&shares)?, &|person| !others(person));
         outside = outside.with(theirs);
         let parameters = known.parameters_at(&shares);
         parts.push(Fold { left_out, parameters, in_sample, on_left_out: theirs.mean() });
     }
-    Fit {
+    Ok(Fit {
         parameters: known.parameters_at(&everybody),
         before,
-        in_sample: mean(known.at(&everybody), &|_| true),
+        in_sample: mean(known.at(&everybody)?, &|_| true),
         left_out: (!parts.is_empty()).then(|| outside.mean()),
         folds: parts,
-    }
+    })
 }
 
 /// Mean loss at evenly spaced values of one parameter, the others as they are.
@@ -93,14 +102,9 @@ pub fn sweep(
     base: &IntentionParameters,
     parameter: &Parameter,
     values: usize,
-    told: &dyn Fn(),
-) -> Vec<(f64, Loss)> {
-    let at = |(value, parameters): (f64, IntentionParameters)| {
-        let loss = objective.loss(&parameters);
-        told();
-        (value, loss)
-    };
-    parameter.swept(base, values).into_iter().map(at).collect()
+) -> Result<Vec<(f64, Loss)>, EvaluationProblem> {
+    let (values, parameters): (Vec<f64>, Vec<_>) = parameter.swept(base, values).into_iter().unzip();
+    Ok(values.into_iter().zip(objective.losses(&parameters)?).collect())
 }
 
 impl Tally {
@@ -124,14 +128,18 @@ struct Known<'a> {
 }
 
 impl Known<'_> {
-    fn at(&mut self, shares: &[f64]) -> &Loss {
-        let place = self.known.iter().position(|(known, _)| known == shares).unwrap_or_else(|| {
-            let loss = self.objective.loss(&self.parameters_at(shares));
-            (self.told)();
-            self.known.push((shares.to_vec(), loss));
-            self.known.len() - 1
-        });
-        &self.known[place].1
+    fn at(&mut self, shares: &[f64]) -> Result<&Loss, EvaluationProblem> {
+        let known = self.known.iter().position(|(known, _)| known == shares);
+        let place = match known {
+            Some(place) => place,
+            None => {
+                let losses = self.objective.losses(&[self.parameters_at(shares)])?;
+                (self.told)();
+                self.known.extend(losses.into_iter().map(|loss| (shares.to_vec(), loss)));
+                self.known.len() - 1
+            }
+        };
+        Ok(&self.known[place].1)
     }
 
     fn parameters_at(&self, shares: &[f64]) -> IntentionParameters {
@@ -145,8 +153,8 @@ impl Known<'_> {
         parameters
     }
 
-    fn fitted(&mut self, start: &[f64], among: &dyn Fn(&str) -> bool) -> Vec<f64> {
-        least(start, |shares| mean(self.at(shares), among)).shares
+    fn fitted(&mut self, start: &[f64], among: &dyn Fn(&str) -> bool) -> Result<Vec<f64>, EvaluationProblem> {
+        least(start, |shares| Ok(mean(self.at(shares)?, among))).map(|found| found.shares)
     }
 }
 
@@ -171,6 +179,16 @@ mod tests {
             "wishes"
         }
 
+        fn figure(&self) -> &'static str {
+            "distance to the wish"
+        }
+
+        fn losses(&self, parameters: &[IntentionParameters]) -> Result<Vec<Loss>, EvaluationProblem> {
+            Ok(parameters.iter().map(|parameters| self.loss(parameters)).collect())
+        }
+    }
+
+    impl Wishes {
         fn loss(&self, parameters: &IntentionParameters) -> Loss {
             let of = |(person, wish): &(&str, f64)| {
                 let loss = (parameters.paper.distance_share - wish).powi(2);
@@ -184,7 +202,7 @@ mod tests {
 
     #[test]
     fn people_left_out_are_judged_by_what_the_others_wished() {
-        let fit = fit(&FOUR, RuleName::Paper, 4, &|| ());
+        let fit = fit(&FOUR, RuleName::Paper, 4, &|| ()).unwrap();
         assert!((fit.parameters.paper.distance_share - 0.5).abs() < 0.02, "{fit:?}");
         assert!(fit.in_sample < fit.before && fit.left_out.unwrap() > fit.in_sample);
         let of_d = fit.folds.iter().find(|fold| fold.left_out == ["d"]).unwrap();
@@ -199,7 +217,7 @@ mod tests {
     #[test]
     fn nothing_is_evaluated_twice_and_parameters_that_do_not_matter_stay() {
         let count = Cell::new(0);
-        let fit = fit(&FOUR, RuleName::Paper, 0, &|| count.set(count.get() + 1));
+        let fit = fit(&FOUR, RuleName::Paper, 0, &|| count.set(count.get() + 1)).unwrap();
         assert!(count.get() < 60, "{}", count.get());
         assert_eq!((fit.left_out, fit.folds.len()), (None, 0));
         assert_eq!(fit.parameters.paper.threshold, IntentionParameters::default().paper.threshold);
@@ -208,7 +226,7 @@ mod tests {
     #[test]
     fn a_sweep_goes_from_end_to_end() {
         let w = Parameter::named("paper.distance_share").unwrap();
-        let swept = sweep(&FOUR, &IntentionParameters::default(), w, 13, &|| ());
+        let swept = sweep(&FOUR, &IntentionParameters::default(), w, 13).unwrap();
         assert_eq!((swept.len(), swept[0].0, swept[12].0), (13, 0.0, 1.0));
         let best =
             swept.iter().min_by(|a, b| mean(&a.1, &|_| true).total_cmp(&mean(&b.1, &|_| true))).unwrap();

@@ -11,12 +11,12 @@ pub(super) struct Found {
 }
 
 /// Search from `start`. The first steps are a quarter of each range, and are halved until they are finer than a hundredth.
-pub(super) fn least(start: &[f64], mut loss: impl FnMut(&[f64]) -> f64) -> Found {
-    let mut found = Found { shares: start.to_vec(), loss: loss(start) };
+pub(super) fn least<E>(start: &[f64], mut loss: impl FnMut(&[f64]) -> Result<f64, E>) -> Result<Found, E> {
+    let mut found = Found { shares: start.to_vec(), loss: loss(start)? };
     let mut step = FIRST_STEP;
     while step >= LAST_STEP {
         let base = found.clone();
-        explore(&mut found, step, &mut loss);
+        explore(&mut found, step, &mut loss)?;
         if found.loss >= base.loss {
             step *= 0.5;
             continue;
@@ -28,17 +28,21 @@ pub(super) fn least(start: &[f64], mut loss: impl FnMut(&[f64]) -> f64) -> Found
             .zip(&base.shares)
             .map(|(now, before)| (2.0 * now - before).clamp(0.0, 1.0))
             .collect();
-        let mut leap = Found { loss: loss(&beyond), shares: beyond };
-        explore(&mut leap, step, &mut loss);
+        let mut leap = Found { loss: loss(&beyond)?, shares: beyond };
+        explore(&mut leap, step, &mut loss)?;
         if leap.loss < found.loss {
             found = leap;
         }
     }
-    found
+    Ok(found)
 }
 
 /// One step up and down along each parameter in turn, keeping what is less.
-fn explore(found: &mut Found, step: f64, loss: &mut impl FnMut(&[f64]) -> f64) {
+fn explore<E>(
+    found: &mut Found,
+    step: f64,
+    loss: &mut impl FnMut(&[f64]) -> Result<f64, E>,
+) -> Result<(), E> {
     for axis in 0..found.shares.len() {
         for way in [step, -step] {
             let mut shares = found.shares.clone();
@@ -46,13 +50,14 @@ fn explore(found: &mut Found, step: f64, loss: &mut impl FnMut(&[f64]) -> f64) {
             if shares == found.shares {
                 continue;
             }
-            let there = loss(&shares);
+            let there = loss(&shares)?;
             if there < found.loss {
                 *found = Found { shares, loss: there };
                 break;
             }
         }
     }
+    Ok(())
 }
 
 const FIRST_STEP: f64 = 0.25;
@@ -67,10 +72,10 @@ mod tests {
         // Rosenbrock's valley on a unit square, its bottom at (0.75, 0.6).
         let valley = |p: &[f64]| {
             let (x, y) = (1.0 + (p[0] - 0.75), 1.0 + (p[1] - 0.6));
-            (1.0 - x).powi(2) + 10.0 * (y - x * x).powi(2)
+            Ok::<_, ()>((1.0 - x).powi(2) + 10.0 * (y - x * x).powi(2))
         };
         let found = least(&[0.1, 0.9], valley);
-        assert!(found.loss < 1e-3, "{found:?}");
+        assert!(found.as_ref().is_ok_and(|found| found.loss < 1e-3), "{found:?}");
         assert_eq!(found, least(&[0.1, 0.9], valley));
     }
 
@@ -78,8 +83,18 @@ mod tests {
     fn an_optimum_at_an_edge_is_reached_and_not_passed() {
         let found = least(&[0.5, 0.5], |p| {
             assert!(p.iter().all(|share| (0.0..=1.0).contains(share)));
-            p[0] - p[1]
+            Ok::<_, ()>(p[0] - p[1])
         });
-        assert_eq!(found.shares, [0.0, 1.0]);
+        assert_eq!(found.unwrap().shares, [0.0, 1.0]);
+    }
+
+    #[test]
+    fn a_loss_that_cannot_be_told_ends_the_search() {
+        let mut asked = 0;
+        let ended = least(&[0.5], |_| {
+            asked += 1;
+            if asked < 3 { Ok(1.0) } else { Err("no more") }
+        });
+        assert_eq!((ended, asked), (Err("no more"), 3));
     }
 }

@@ -76,7 +76,7 @@ pub(super) fn by_value(parameter: &str, name: &str, rows: &[&Row]) -> Plot {
     let marked =
         |(at, value): (usize, &f64)| (at % 3 == 0 || at + 1 == values.len()).then(|| (*value, short(*value)));
     Plot {
-        title: format!("{name}: reaches served, by {parameter}"),
+        title: format!("Reaches served: {name}"),
         across: parameter.into(),
         up: "served".into(),
         ticks: values.iter().enumerate().filter_map(marked).collect(),
@@ -133,6 +133,8 @@ pub(super) fn reliability(lines: &Lines<'_>) -> Plot {
             }
         }
         let total: f64 = sums.values().map(|[cases, ..]| cases).sum();
+        // A share of a few moments is none.
+        sums.retain(|_, [cases, ..]| *cases >= LEAST_CASES);
         let point = |[cases, probability, share]: &[f64; 3]| Point {
             radius: 1.5 + 6.0 * (cases / total).sqrt(),
             ..Point::at(probability / cases, share / cases)
@@ -153,6 +155,9 @@ fn line_of(series: &Series, points: Vec<Point>) -> Line {
     Line { name: series.name.clone(), style: series.style.clone(), points }
 }
 
+/// So many moments make a point of the reliability diagram.
+const LEAST_CASES: f64 = 10.0;
+
 /// The numbers of objects, all of them last.
 fn counts(lines: &Lines<'_>) -> Vec<usize> {
     let mut counts: Vec<usize> = lines.iter().flat_map(|(_, rows)| rows).map(|row| row.objects).collect();
@@ -169,7 +174,8 @@ pub(super) fn count_words(objects: usize) -> String {
     if objects == 0 { "all".to_owned() } else { objects.to_string() }
 }
 
-fn short(value: f64) -> String {
-    let text = format!("{value:.2}");
+/// With no more digits than it needs, four at most.
+pub(super) fn short(value: f64) -> String {
+    let text = format!("{value:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
