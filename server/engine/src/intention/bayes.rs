@@ -59,6 +59,7 @@ pub struct BayesParameters {
     pub none_angle_rad: f64,
 }
 
+/// As `deploy/parameters/bayes.toml` has them, with where they come from.
 impl Default for BayesParameters {
     fn default() -> Self {
         Self {

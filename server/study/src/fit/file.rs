@@ -265,6 +265,17 @@ mod tests {
     }
 
     #[test]
+    fn the_shipped_file_is_what_is_compiled_in() {
+        let text = include_str!("../../../../deploy/parameters/bayes.toml");
+        let shipped = ParameterFile::read(text, "deploy/parameters/bayes.toml").unwrap();
+        assert_eq!((shipped.rule, &shipped.parameters), (RuleName::Bayes, &IntentionParameters::default()));
+        // Every parameter is named, as the program would write it, below where they come from.
+        let (provenance, rest) = text.split_at(text.find("schema").unwrap());
+        assert_eq!(rest, shipped.text().unwrap());
+        assert!(provenance.contains("People:") && provenance.contains("Objective:"));
+    }
+
+    #[test]
     fn a_file_of_recordings_is_known_by_its_content() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("abc.jsonl");
