@@ -290,7 +290,7 @@ mod tests {
         assert!(page.contains("<title>prediction: 3 of 10 reaches</title>"), "{page}");
         assert!(page.contains("<title>route: 2 of 10 reaches</title>") && page.contains("50.0 % of 10"));
         // One rule needs no comparison.
-        assert!(!page.contains("objects together"));
+        assert!(!page.contains("up to five together"));
         let two = page_of(vec![row("paper", 2, 0.5)], vec![row("paper", 0, 0.5), row("told", 0, 0.9)]);
         let (told, paper) =
             (two.find(">told · proxy<").unwrap(), two.find(">paper · proxy, the default<").unwrap());

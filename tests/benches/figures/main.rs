@@ -84,6 +84,11 @@ fn main() {
     let text = table::markdown(&rows, &Machine::this(), options.effort);
     say(&format!("\n{text}"));
     if let Some(path) = options.out {
+        let before = std::fs::read_to_string(&path).unwrap_or_default();
+        let text = match table::kept(&before) {
+            "" => text,
+            kept => format!("{text}\n{kept}"),
+        };
         std::fs::write(&path, text).unwrap_or_else(|why| panic!("cannot write {path}: {why}"));
     }
 }

@@ -80,6 +80,15 @@ impl Machine {
     }
 }
 
+/// What a file has from the heading on under which `covr evaluate` is reported: `make bench` does not measure it, so it
+/// stays.
+pub fn kept(file: &str) -> &str {
+    file.find(KEPT_FROM).map_or("", |at| &file[at + 1..])
+}
+
+/// At the beginning of a line.
+const KEPT_FROM: &str = "\n## Recorded people";
+
 /// The whole table as Markdown.
 pub fn markdown(rows: &[Row], machine: &Machine, effort: Effort) -> String {
     let Machine { cores, model, kernel, rustc } = machine;

@@ -14,7 +14,7 @@ pub(super) fn served(rows: &[(&Row, Series)]) -> String {
     let floor = (5.0 * least).floor().clamp(0.0, 4.0) / 5.0;
     let x_of = |share: f64| LEFT + (share.clamp(floor, 1.0) - floor) / (1.0 - floor) * (RIGHT - LEFT);
     let height = TOP + STEP * rows.len() as f64 + 6.0;
-    let mut svg = opened("Reaches served, one to five objects together", height);
+    let mut svg = opened("Reaches served, all numbers of objects up to five together", height);
     let marks = if floor >= 0.6 { 5 } else { 10 };
     for percent in ((100.0 * floor).round() as usize..=100).step_by(marks) {
         let x = x_of(percent as f64 / 100.0);
