@@ -7,6 +7,7 @@
 
 mod blame;
 mod bounded;
+mod course;
 mod draw;
 mod explain;
 mod plan;

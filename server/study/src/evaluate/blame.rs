@@ -3,9 +3,10 @@
 use covr_engine::machine::{AxisLimits, Limits};
 use covr_engine::time::Span;
 
+use super::course::Course;
 use super::plan::{MachineKind, RuleChoice, SeparationChoice};
 use super::row::Judged;
-use super::run::{Course, EvaluationProblem};
+use super::run::EvaluationProblem;
 use crate::replay::TrialOutcome;
 
 /// Why a column was not there.

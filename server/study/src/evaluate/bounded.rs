@@ -1,8 +1,9 @@
 //! The rule `bound`: not a rule of the engine, but the search for any motion at all that would have served the reach.
 
+use super::course::Course;
 use super::plan::{Plan, RuleChoice, SeparationChoice};
 use super::row::{Judged, LeftOut};
-use super::run::{Course, EvaluationProblem, Job};
+use super::run::{EvaluationProblem, Job};
 use super::subjects::travel;
 use crate::bound::{Bound, Question, bound};
 use crate::replay::{BeliefTold, TrialOutcome, TrialProblem};

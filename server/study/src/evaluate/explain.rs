@@ -7,8 +7,9 @@ use covr_engine::motion::travel_secs;
 use covr_engine::time::Time;
 
 use super::blame;
+use super::course::{Course, pace};
 use super::plan::{Objects, Plan, RuleChoice};
-use super::run::{Course, EvaluationProblem, cells, pace};
+use super::run::{EvaluationProblem, cells};
 use super::subjects::{Subjects, task, travel};
 use crate::replay::{TrialOutcome, Walk};
 

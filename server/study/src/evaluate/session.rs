@@ -4,9 +4,10 @@ use covr_engine::frames::{Floor, Planar};
 use covr_engine::intention::IntentionParameters;
 use covr_engine::time::Time;
 
+use super::course::{conduct, machine, pace, prior_of, seed};
 use super::plan::{Plan, Prior, RuleChoice};
 use super::row::Judged;
-use super::run::{Cell, EvaluationProblem, conduct, machine, pace, prior_of, seed};
+use super::run::{Cell, EvaluationProblem};
 use super::subjects::{Session, TRAVEL_MARGIN_M, travel};
 use crate::replay::{SessionReplay, TrialOutcome, VisitPlan, Walk};
 use crate::trace::Recording;

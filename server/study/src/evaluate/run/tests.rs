@@ -1,6 +1,9 @@
 use super::*;
+use crate::evaluate::course::seed;
+use crate::evaluate::plan::MachineKind;
 use crate::evaluate::{explain, terminal};
 use crate::replay::TrackingNoise;
+use covr_engine::frames::Floor;
 use covr_engine::intention::RuleName;
 use covr_engine::time::Span;
 use std::fmt::Write;
