@@ -226,6 +226,20 @@ async fn an_intruder_input_is_a_protective_stop_and_a_stop_input_latches_until_i
     let state = server.good("GET", "/api/v1/state", None).await;
     assert_eq!(state["stop"]["rule"], "R4");
     assert_eq!(state["stop"]["why"]["input"], "button");
+    let event = eventually("the stop's event", || async {
+        let page = server.good("GET", "/api/v1/events?kind=stop_pressed", None).await;
+        page.as_array().unwrap().first().cloned()
+    })
+    .await;
+    let detail = &event["detail"];
+    assert_eq!((&detail["by"], &detail["author"]), (&"input".into(), &"button".into()), "{event}");
+    assert_eq!(detail["why"]["id"], "stop_input");
+    assert!(detail["to_drive_micros"].as_u64().is_some_and(|micros| micros < 1_000_000), "{event}");
+    let metrics = server.call("GET", "/metrics", None).await.text().await.unwrap();
+    // The recorder of metrics is the process's, and so are the stops of other tests in it.
+    let counted =
+        metrics.lines().find_map(|line| line.strip_prefix("covr_stops_pressed_total{lane=\"input\"} "));
+    assert!(counted.is_some_and(|count| count.parse::<u64>().unwrap() >= 1), "{metrics}");
     let refused = server.refused(409, "POST", "/api/v1/reset", Some("{\"reason\": \"looked\"}")).await;
     assert!(refused.detail.contains("button"), "{refused:?}");
     level("button", "1\n");

@@ -148,7 +148,7 @@ impl App {
         received_at: Instant,
     ) -> Result<Duration, NotReached> {
         let reached = self.control.stop(lane, reason.clone().unwrap_or_default(), received_at).await;
-        meters::stop_pressed(lane, reached.as_ref().ok().copied());
+        meters::stop_pressed(lane.name(), reached.as_ref().ok().copied());
         let micros = reached.as_ref().ok().map(|d| d.as_micros() as u64);
         let summary = match micros {
             Some(micros) => format!("{asker} pressed stop; at the drive after {micros} us"),

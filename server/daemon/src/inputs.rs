@@ -8,6 +8,7 @@
 
 mod lane;
 mod source;
+mod stop;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,6 +20,7 @@ use covr_engine::time::{Span, Time};
 use crate::clock::Clock;
 use crate::config::{Input, InputKind};
 use lane::{Lane, Seen};
+pub use stop::{InputStop, LANE};
 
 /// Every input that is set up. The threads end when this is dropped.
 #[derive(Debug, Default)]
@@ -34,6 +36,9 @@ struct Line {
     kind: InputKind,
     lane: Arc<Lane>,
     activations_seen: u64,
+    seen: Seen,
+    /// When a stop by it was last noted.
+    noted_at: Option<Time>,
 }
 
 impl InputLines {
@@ -49,7 +54,8 @@ impl InputLines {
                 source::Follower { input: input.clone(), lane: lane.clone(), clock, quit: quit.clone() };
             std::thread::Builder::new().name("input".into()).spawn(move || follower.run())?;
             let (name, kind) = (input.name.as_str().into(), input.kind);
-            lines.lines.push(Line { name, kind, lane, activations_seen: 0 });
+            let line = Line { name, kind, lane, activations_seen: 0, seen: Seen::Inactive, noted_at: None };
+            lines.lines.push(line);
         }
         for (line, input) in lines.lines.iter().zip(inputs) {
             line.lane.wait_for_a_word(Duration::from_secs_f64(input.heartbeat_timeout_secs));
@@ -57,11 +63,12 @@ impl InputLines {
         Ok(lines)
     }
 
-    /// For the control thread: what they say now. An activation shorter than a step is said once all the same.
-    pub fn look(&mut self, now: Time) -> Inputs {
+    /// For the control thread: what they say now, with every new stop put to `stops`. An activation shorter than a step
+    /// is said once all the same.
+    pub fn look(&mut self, now: Time, stops: &mut Vec<InputStop>) -> Inputs {
         let mut inputs = Inputs::default();
         for line in &mut self.lines {
-            let level = match line.look(now) {
+            let level = match line.look(now, stops) {
                 Seen::Inactive => InputLevel::Inactive,
                 Seen::Active => InputLevel::Active(line.name.clone()),
                 Seen::Silent => InputLevel::Silent(line.name.clone()),
@@ -85,16 +92,29 @@ impl Drop for InputLines {
 }
 
 impl Line {
-    fn look(&mut self, now: Time) -> Seen {
+    fn look(&mut self, now: Time, stops: &mut Vec<InputStop>) -> Seen {
         let activations = self.lane.activations();
-        let seen = self.lane.look(now);
-        if std::mem::replace(&mut self.activations_seen, activations) != activations && seen == Seen::Inactive
+        let anew = std::mem::replace(&mut self.activations_seen, activations) != activations;
+        let seen = match self.lane.look(now) {
+            Seen::Inactive if anew => Seen::Active,
+            seen => seen,
+        };
+        let before = std::mem::replace(&mut self.seen, seen);
+        let activated = seen != Seen::Inactive && (anew || before == Seen::Inactive);
+        if activated
+            && self.kind == InputKind::Stop
+            && self.noted_at.is_none_or(|at| now - at >= NOTED_ONCE_IN)
         {
-            return Seen::Active;
+            self.noted_at = Some(now);
+            let silent = seen == Seen::Silent;
+            stops.push(InputStop { input: self.name.clone(), silent, since: self.lane.active_since(now) });
         }
         seen
     }
 }
+
+/// A line that chatters stops each time, and is recorded once in this time.
+const NOTED_ONCE_IN: Span = Span::from_millis(1_000);
 
 #[cfg(test)]
 mod tests;

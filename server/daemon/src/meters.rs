@@ -15,6 +15,7 @@ use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 use metrics_util::MetricKindMask;
 
 use crate::control::StopLaneName;
+use crate::inputs;
 use crate::store::SessionEnd;
 
 /// What every client's messages count into, looked up once.
@@ -79,8 +80,8 @@ pub fn lateness() -> Histogram {
 }
 
 /// A stop reached the drive, or did not.
-pub fn stop_pressed(lane: StopLaneName, to_drive: Option<Duration>) {
-    counter!("covr_stops_pressed_total", "lane" => lane.name()).increment(1);
+pub fn stop_pressed(lane: &'static str, to_drive: Option<Duration>) {
+    counter!("covr_stops_pressed_total", "lane" => lane).increment(1);
     match to_drive {
         Some(to_drive) => histogram!("covr_stop_to_drive_seconds").record(to_drive.as_secs_f64()),
         None => counter!("covr_stops_unacknowledged_total").increment(1),
@@ -123,8 +124,8 @@ fn describe() {
     ] {
         counter!(name).increment(0);
     }
-    for lane in StopLaneName::ALL {
-        counter!("covr_stops_pressed_total", "lane" => lane.name()).increment(0);
+    for lane in StopLaneName::ALL.map(StopLaneName::name).into_iter().chain([inputs::LANE]) {
+        counter!("covr_stops_pressed_total", "lane" => lane).increment(0);
     }
     for rule in 1..=16 {
         counter!("covr_rule_breaches_total", "rule" => RuleId(rule).name()).increment(0);

@@ -4,6 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use covr_engine::event::EventKind;
 use covr_engine::mode::Mode;
@@ -15,6 +16,7 @@ use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
 use crate::clock::Clock;
 use crate::control::EngineEvent;
+use crate::inputs::{self, InputStop};
 use crate::meters;
 use crate::persons::Persons;
 use crate::stage::Stage;
@@ -27,6 +29,8 @@ pub enum Record {
     Engine(EngineEvent),
     /// From whoever carried a request, a change or a message.
     Act(Event),
+    /// A digital input stopped the machine; the time until the braking command was at the drive, if one was taken.
+    InputStop(InputStop, Option<Duration>),
     /// Say when everything before this is stored.
     Settle(oneshot::Sender<Settled>),
     /// Say which sessions ran, by the events before this.
@@ -101,14 +105,7 @@ impl Recorder {
 
     /// Record an act; with the queue full it is dropped and counted.
     pub fn record(&self, kind: &str, summary: impl Into<String>, detail: Value) {
-        let at = self.clock.now();
-        let event = Event {
-            at_micros: at.micros(),
-            at: self.clock.wall_text(at),
-            kind: kind.into(),
-            summary: summary.into(),
-            detail,
-        };
+        let event = event(self.clock, kind, summary.into(), detail);
         if self.records.try_send(Record::Act(event)).is_err() {
             self.dropped.fetch_add(1, Ordering::Relaxed);
         }
@@ -181,6 +178,11 @@ impl Task {
     async fn take(&mut self, record: Record) {
         match record {
             Record::Act(event) => self.add(event),
+            Record::InputStop(stop, to_drive) => {
+                meters::stop_pressed(inputs::LANE, to_drive);
+                let (summary, detail) = (stop.summary(to_drive), stop.detail(to_drive));
+                self.add(event(self.desk.clock, "stop_pressed", summary, detail));
+            }
             Record::Engine(EngineEvent { event, scene }) => {
                 let at = self.desk.clock.wall_text(event.at);
                 let objects: Vec<String> =
@@ -298,6 +300,12 @@ impl Task {
     fn settled(&mut self) -> Settled {
         if std::mem::take(&mut self.lost) { Settled::Lost } else { Settled::Stored }
     }
+}
+
+/// An event of now.
+fn event(clock: Clock, kind: &str, summary: String, detail: Value) -> Event {
+    let at = clock.now();
+    Event { at_micros: at.micros(), at: clock.wall_text(at), kind: kind.into(), summary, detail }
 }
 
 const QUEUE: usize = 4_096;

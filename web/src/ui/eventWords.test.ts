@@ -29,6 +29,14 @@ it("keeps what the server adds beside it", () => {
   expect(eventWords(stop, label)).toEqual({ text: "Bo pressed stop; at the drive after 1.8 ms", server: null });
 });
 
+it("tells a stop by an input from one that somebody pressed", () => {
+  const why = { id: "stop_input", input: "button" };
+  const stop = event("stop_pressed", { author: "button", by: "input", reason: "the stop input button is active", why, to_drive_micros: 1840 });
+  expect(eventWords(stop, label)).toEqual({ text: "stop by the input button; at the drive after 1.8 ms", server: { text: "the stop input button is active" } });
+  useLanguage("fr");
+  expect(eventWords(stop, label).server).toEqual({ text: "l’entrée d’arrêt button est active" });
+});
+
 it("says why in the page's language, where the server says which reason it is", () => {
   const why = { id: "pose_too_old", person: "Ada", age_secs: 0.6 };
   const breached = event("rule_breached", { rule: "R2", title: "tracking", reason: "the newest pose of Ada is 0.60 s old", why });

@@ -63,7 +63,10 @@ function textOf(event: WireEvent, label: (object: string) => string): EventWords
       const author = field("author");
       if (author === null) return null;
       const micros = number("to_drive_micros");
-      return { text: `${text.stop_pressed(author)}; ${micros === null ? text.notAtDrive : text.atDrive(millis(micros / 1000))}`, server: spoken(field("reason")) };
+      const isInput = detail["by"] === "input";
+      const who = isInput ? text.stop_by_input(author) : text.stop_pressed(author);
+      const reached = micros === null ? text.notAtDrive : text.atDrive(millis(micros / 1000));
+      return { text: `${who}; ${reached}`, server: isInput ? why("reason") : spoken(field("reason")) };
     }
     case "prior_changed": {
       const [from, to] = [number("from"), number("to")];

@@ -106,7 +106,7 @@ impl StopLane {
 }
 
 /// A second is two hundred and fifty control periods.
-const LONGEST_WAIT: Duration = Duration::from_secs(1);
+pub(super) const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
 #[cfg(test)]
 mod tests {

@@ -19,10 +19,10 @@ use tokio::sync::watch;
 
 use super::inbox::Inbox;
 use super::lateness::Lateness;
-use super::stop_lane::{StopLane, StopLaneName};
+use super::stop_lane::{LONGEST_WAIT, StopLane, StopLaneName};
 use super::{Control, Ended, EngineEvent, Published, Setup, real_time};
 use crate::clock::Clock;
-use crate::inputs::InputLines;
+use crate::inputs::{InputLines, InputStop};
 use crate::meters;
 use crate::recorder::Record;
 
@@ -73,6 +73,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
         stops: stops.clone(),
         stops_seen: [0; 4],
         stops_unacknowledged: None,
+        input_stops: Vec::new(),
         quit: quit.clone(),
         events: setup.events,
         events_dropped: events_dropped.clone(),
@@ -113,6 +114,9 @@ struct Run {
     stops_seen: [u64; 4],
     /// The command of the first step with a stop that the machine has not confirmed yet was vetted then.
     stops_unacknowledged: Option<Time>,
+    /// Stops by digital inputs whose command the machine has not confirmed yet, with the time when it was vetted. Few:
+    /// one a second of each line at most.
+    input_stops: Vec<(InputStop, Time)>,
     quit: Arc<AtomicBool>,
     events: Sender<Record>,
     events_dropped: Arc<AtomicU64>,
@@ -162,7 +166,8 @@ impl Run {
     fn tick(&mut self) {
         let now = self.clock.now();
         self.drive.read(&mut self.engine, now);
-        self.engine.observe(now, Observation::Inputs(self.inputs.look(now)));
+        let mut input_stops = Vec::new();
+        self.engine.observe(now, Observation::Inputs(self.inputs.look(now, &mut input_stops)));
         self.inbox.tell(&mut self.engine, now);
         let mut answers = Vec::new();
         self.inbox.ask(&mut self.engine, now, &mut answers);
@@ -172,6 +177,7 @@ impl Run {
         if pressed {
             self.stops_unacknowledged.get_or_insert(command.at());
         }
+        self.input_stops.extend(input_stops.into_iter().map(|stop| (stop, command.at())));
         self.drive.write(&command, now);
         let written = Instant::now();
         self.control_loop.steps += 1;
@@ -191,6 +197,7 @@ impl Run {
             // Whoever asked may have gone; the answer is then nobody's.
             let _ = reply.send(answer);
         }
+        self.record_input_stops(written);
         // Only a command that the machine took acknowledges a stop; until one is, the presser is told so.
         if self.stops_unacknowledged.is_some_and(|since| self.drive.gantry.taken() >= since) {
             self.stops_unacknowledged = None;
@@ -198,6 +205,24 @@ impl Run {
                 lane.acknowledge(presses, written);
             }
         }
+    }
+
+    /// Tell of stops by inputs whose command the machine confirmed, or did not in time.
+    fn record_input_stops(&mut self, written: Instant) {
+        let confirmed = self.drive.gantry.taken();
+        let (clock, events, dropped) = (self.clock, &self.events, &self.events_dropped);
+        self.input_stops.retain(|(stop, vetted)| {
+            let passed = written.saturating_duration_since(clock.instant_of(stop.since));
+            let taken = confirmed >= *vetted;
+            if !taken && passed < LONGEST_WAIT {
+                return true;
+            }
+            let record = Record::InputStop(stop.clone(), taken.then_some(passed));
+            if events.try_send(record).is_err() {
+                dropped.fetch_add(1, Ordering::Relaxed);
+            }
+            false
+        });
     }
 
     /// Put every new press to the engine; whether there was one.

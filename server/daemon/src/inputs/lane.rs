@@ -1,6 +1,6 @@
 //! What one input said last, in atomics: how long it is believed, whether it was active, how often it became so.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 use std::sync::{Condvar, Mutex};
 use std::time::Duration;
 
@@ -13,6 +13,8 @@ pub struct Lane {
     /// Twice the time until which the last word is believed, µs, and one more if it was `active`; 0: no good word.
     word: AtomicU64,
     activations: AtomicU64,
+    /// When it last became active or was lost, µs.
+    activated_at: AtomicI64,
     /// Whether there was a word since the start, for whoever waits for the first.
     begun: AtomicBool,
     first: (Mutex<()>, Condvar),
@@ -36,6 +38,7 @@ impl Lane {
             timeout,
             word: AtomicU64::new(0),
             activations: AtomicU64::new(0),
+            activated_at: AtomicI64::new(0),
             begun: AtomicBool::new(false),
             first: (Mutex::new(()), Condvar::new()),
         }
@@ -44,7 +47,7 @@ impl Lane {
     /// A good word at this time.
     pub fn say(&self, active: bool, now: Time) {
         if active && self.look(now) != Seen::Active {
-            self.activations.fetch_add(1, Ordering::AcqRel);
+            self.activate(now);
         }
         let until = (now + self.timeout).micros().max(0) as u64;
         self.word.store(until * 2 + u64::from(active), Ordering::Release);
@@ -55,9 +58,9 @@ impl Lane {
     }
 
     /// The line is cut, or what it says is no word.
-    pub fn lose(&self) {
+    pub fn lose(&self, now: Time) {
         if self.word.swap(0, Ordering::AcqRel) != 0 {
-            self.activations.fetch_add(1, Ordering::AcqRel);
+            self.activate(now);
         }
     }
 
@@ -77,11 +80,27 @@ impl Lane {
         self.activations.load(Ordering::Acquire)
     }
 
+    /// Since when it counts as active, for one that does, or did a moment ago.
+    pub fn active_since(&self, now: Time) -> Time {
+        let word = self.word.load(Ordering::Acquire);
+        let until = Time::from_micros((word / 2) as i64);
+        match word {
+            0 if !self.begun.load(Ordering::Acquire) => now,
+            word if word > 0 && now > until => until,
+            _ => Time::from_micros(self.activated_at.load(Ordering::Acquire)),
+        }
+    }
+
     /// Wait for the first word, at most so long.
     pub fn wait_for_a_word(&self, at_most: Duration) {
         let Ok(held) = self.first.0.lock() else { return };
         let unheard = |(): &mut ()| !self.begun.load(Ordering::Acquire);
         // Without a word in time the input is silent, and says so.
         drop(self.first.1.wait_timeout_while(held, at_most, unheard));
+    }
+
+    fn activate(&self, now: Time) {
+        self.activated_at.store(now.micros(), Ordering::Release);
+        self.activations.fetch_add(1, Ordering::AcqRel);
     }
 }

@@ -30,7 +30,7 @@ impl Follower {
         let mut complaint = String::new();
         while !self.quit.load(Ordering::Acquire) {
             let lost = self.follow().err();
-            self.lane.lose();
+            self.lane.lose(self.clock.now());
             let why = lost.map_or_else(|| "the line is cut".to_owned(), |error| error.to_string());
             if why != complaint && !self.quit.load(Ordering::Acquire) {
                 tracing::warn!(input, %source, why, "a digital input is lost; it counts as active");
@@ -89,7 +89,7 @@ impl Follower {
                         word.clear();
                     }
                     _ if word.len() < LONGEST_WORD => word.push(*byte),
-                    _ => self.lane.lose(),
+                    _ => self.lane.lose(self.clock.now()),
                 }
             }
         }
@@ -100,7 +100,7 @@ impl Follower {
         let level = match word.trim_ascii() {
             b"0" => Level::Low,
             b"1" => Level::High,
-            _ => return self.lane.lose(),
+            _ => return self.lane.lose(self.clock.now()),
         };
         let now = self.clock.now();
         let active = level == self.input.active;

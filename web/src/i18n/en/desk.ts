@@ -129,6 +129,7 @@ export const desk = {
     request_accepted: (request: string, author: string) => `${request} by ${author}: accepted`,
     request_refused: (request: string, author: string) => `${request} by ${author}: refused`,
     stop_pressed: (author: string) => `${author} pressed stop`,
+    stop_by_input: (input: string) => `stop by the input ${input}`,
     atDrive: (span: string) => `at the drive after ${span}`,
     notAtDrive: "the drive did not acknowledge",
     person_entered: (person: string) => `${person} entered`,

@@ -129,6 +129,7 @@ export const desk = {
     request_accepted: (request: string, author: string) => `${request}, par ${author} : accepté`,
     request_refused: (request: string, author: string) => `${request}, par ${author} : refusé`,
     stop_pressed: (author: string) => `${author} a demandé l’arrêt`,
+    stop_by_input: (input: string) => `arrêt par l’entrée ${input}`,
     atDrive: (span: string) => `au variateur après ${span}`,
     notAtDrive: "le variateur n’a pas répondu",
     person_entered: (person: string) => `${person} est entré·e`,
