@@ -6,6 +6,7 @@ mod clients;
 mod config;
 mod contract;
 mod dashboards;
+mod game_master;
 mod guards;
 mod links;
 mod login;

@@ -39,6 +39,7 @@ fn the_column_is_there_before_the_hand_in_at_least_half_of_the_reaches() {
         standing: None,
         kept_from: KeptFrom::Everybody,
         v_h_mps: 1.6,
+        needs_game_master: false,
         latched_because: None,
     };
     let mut control = ClosedLoop::new(

@@ -114,7 +114,7 @@ describe("help", () => {
     await dashboard.page.getByTestId("rule-R3").getByRole("link").click();
     await until("the rule's help has the focus", 5_000, () => focusIs("help-R3"));
     expect(await dashboard.says("help-R3")).toContain("1.6 m/s");
-    expect(await dashboard.says("help-R11")).toContain("not watched");
+    expect(await dashboard.says("help-R14")).toContain("not watched");
     await dashboard.page.keyboard.press("Escape");
     await dashboard.page.getByTestId("stop-help").click();
     await until("the stop's help has the focus", 5_000, () => focusIs("help-stop-R4"));

@@ -121,8 +121,22 @@ pub struct Machine {
 /// What watches the arena beside the headsets.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Safety {
+    /// When a game master's dashboard must be connected to arm (R11).
+    pub game_master: GameMasterNeeded,
     /// Digital inputs.
     pub inputs: Vec<Input>,
+}
+
+/// When arming needs a game master's dashboard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum GameMasterNeeded {
+    /// With every machine but the simulated one.
+    #[default]
+    ByMachine,
+    /// With every machine.
+    Always,
+    /// With none.
+    Never,
 }
 
 /// Which machine.
@@ -262,6 +276,36 @@ impl Default for Config {
     }
 }
 
+impl Config {
+    /// Whether arming needs a game master's dashboard (R11).
+    pub fn needs_game_master(&self) -> bool {
+        match self.safety.game_master {
+            GameMasterNeeded::ByMachine => !self.machine.kind.is_simulated(),
+            GameMasterNeeded::Always => true,
+            GameMasterNeeded::Never => false,
+        }
+    }
+}
+
+impl GameMasterNeeded {
+    /// Every choice.
+    pub const ALL: [Self; 3] = [Self::ByMachine, Self::Always, Self::Never];
+
+    /// The name on every surface.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ByMachine => "by_machine",
+            Self::Always => "always",
+            Self::Never => "never",
+        }
+    }
+
+    /// The choice of this name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|needed| needed.name() == name)
+    }
+}
+
 impl Server {
     /// Whether it speaks TLS.
     pub fn is_encrypted(&self) -> bool {
@@ -285,6 +329,11 @@ impl Machine {
 impl MachineKind {
     /// All of them.
     pub const ALL: [Self; 2] = [Self::Simulated, Self::RoboClaw];
+
+    /// Whether nothing real moves.
+    pub const fn is_simulated(self) -> bool {
+        matches!(self, Self::Simulated)
+    }
 
     /// The name on every surface.
     pub const fn name(self) -> &'static str {

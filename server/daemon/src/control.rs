@@ -13,7 +13,7 @@ mod tests;
 mod thread;
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{SyncSender, TrySendError};
 use std::time::{Duration, Instant};
 
@@ -118,6 +118,7 @@ pub struct Control {
     asks: SyncSender<Ask>,
     facts: SyncSender<Fact>,
     stops: Arc<[StopLane; 4]>,
+    game_masters: Arc<AtomicUsize>,
     quit: Arc<AtomicBool>,
     events_dropped: Arc<AtomicU64>,
     published: watch::Receiver<Arc<Published>>,
@@ -127,6 +128,10 @@ pub struct Control {
 /// Where one headset puts its newest pose. Wait-free; a newer pose replaces an unread one.
 #[derive(Debug)]
 pub struct PoseSlot(triple_buffer::Input<Option<PoseSample>>);
+
+/// One game master at a dashboard (R11), until it is dropped.
+#[derive(Debug)]
+pub struct GameMasterThere(Arc<AtomicUsize>);
 
 impl Control {
     /// Start the thread. The machine is read once before this returns, so that a snapshot is there.
@@ -155,6 +160,12 @@ impl Control {
     /// Tell a fact about a person.
     pub fn tell(&self, observation: Observation) -> Result<(), NotDelivered> {
         self.facts.try_send(Fact::Seen(observation)).map_err(not_delivered)
+    }
+
+    /// A game master is at a dashboard, for as long as the answer is kept.
+    pub fn seat_game_master(&self) -> GameMasterThere {
+        self.game_masters.fetch_add(1, Ordering::AcqRel);
+        GameMasterThere(self.game_masters.clone())
     }
 
     /// Connect a headset: its poses are read from the slot from now on.
@@ -200,6 +211,12 @@ impl Control {
 
     fn stop_lane(&self, name: StopLaneName) -> &StopLane {
         &self.stops[name as usize]
+    }
+}
+
+impl Drop for GameMasterThere {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::AcqRel);
     }
 }
 

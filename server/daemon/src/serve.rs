@@ -71,6 +71,11 @@ impl Server {
         let tls = tls(&config).await?;
         let intention = config.people.intention()?;
         let prometheus = meters::install()?;
+        if !config.machine.kind.is_simulated() && !config.needs_game_master() {
+            tracing::warn!(
+                "safety.game_master: a real machine may be armed while nobody is at a dashboard (R11)"
+            );
+        }
         let path = &config.server.database;
         let store = Store::open(path).await.with_context(|| format!("database {}", path.display()))?;
         let left_over = store.take_over().await.context("database")?;
@@ -112,6 +117,7 @@ impl Server {
             standing: config.people.standing,
             kept_from: KeptFrom::Everybody,
             v_h_mps: config.people.v_h_mps,
+            needs_game_master: config.needs_game_master(),
             latched_because: left_over.latched_because,
         };
         let of = (config.safety.inputs.clone(), clock);

@@ -1,5 +1,6 @@
 //! The WebSockets: VR clients and dashboards.
 
+mod attendance;
 pub mod client;
 pub mod dashboard;
 

@@ -24,7 +24,7 @@ use crate::safety::governor::Governor;
 use crate::safety::parameters::Parameters;
 use crate::safety::path::State;
 use crate::safety::separation::{KeptFrom, Separation, Threat};
-use crate::safety::supervisor::{Demand, Supervisor, Watched};
+use crate::safety::supervisor::{Demand, GameMaster, Supervisor, Watched};
 use crate::safety::vetted::Vetted;
 use crate::scene::Scene;
 use crate::snapshot::{RuleId, StopCause};
@@ -55,6 +55,8 @@ pub struct EngineConfig {
     pub kept_from: KeptFrom,
     /// v_h of the separation rule, m/s.
     pub v_h_mps: f64,
+    /// Arming needs a game master's dashboard (R11).
+    pub needs_game_master: bool,
     /// Start latched: the last run ended in a latched stop and left this record, which the engine hands on unread.
     pub latched_because: Option<String>,
 }
@@ -77,6 +79,7 @@ pub struct Engine {
     speed_then_mps: f64,
     arena_confirmed_clear: bool,
     inputs: Inputs,
+    game_master_present: bool,
     persons: Vec<Person>,
     threats: Vec<Threat>,
     report: Option<MachineReport>,
@@ -105,6 +108,7 @@ impl Engine {
             speed_then_mps: 0.0,
             arena_confirmed_clear: false,
             inputs: Inputs::default(),
+            game_master_present: false,
             persons: Vec::new(),
             threats: Vec::new(),
             report: None,
@@ -154,6 +158,7 @@ impl Engine {
                 self.report = Some(report);
             }
             Observation::Inputs(inputs) => self.inputs = inputs,
+            Observation::GameMaster(present) => self.game_master_present = present,
             Observation::DeadlineMissed => self.supervisor.deadline(false),
             Observation::DeadlineMet => self.supervisor.deadline(true),
         }
@@ -280,6 +285,8 @@ impl Engine {
             homes: self.mode == Mode::Homing,
             persons: &self.persons,
             intruder: &self.inputs.intruder,
+            game_master: self.game_master(),
+            armed: self.is_armed(),
             arena_confirmed_clear: self.arena_confirmed_clear,
             travel: &self.config.travel,
         };
@@ -317,6 +324,20 @@ impl Engine {
             InputLevel::Active(input) => Some(Reason::StopInput(input.clone())),
             InputLevel::Silent(input) => Some(Reason::InputSilent(input.clone())),
         }
+    }
+
+    /// R11, as far as this machine asks for it.
+    fn game_master(&self) -> GameMaster {
+        match (self.config.needs_game_master, self.game_master_present) {
+            (false, _) => GameMaster::NotNeeded,
+            (true, true) => GameMaster::Present,
+            (true, false) => GameMaster::Absent,
+        }
+    }
+
+    /// It follows people, or will when a protective stop is over.
+    fn is_armed(&self) -> bool {
+        self.mode == Mode::Following || self.mode == Mode::ProtectiveStop && self.resumes == Mode::Following
     }
 
     /// What a breached rule does to the mode.

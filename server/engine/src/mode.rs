@@ -127,6 +127,8 @@ pub struct Conditions {
     pub homed: bool,
     /// The column still moves: who takes it over now could not go on braking as hard as it does.
     pub moves: bool,
+    /// A game master's dashboard is needed, and none is connected (R11).
+    pub game_master_absent: bool,
     /// Why a latched stop or a fault cannot be left yet: its cause is still there.
     pub cause_still_there: Option<Reason>,
 }
@@ -158,6 +160,7 @@ pub fn respond(mode: Mode, request: RequestKind, conditions: &Conditions) -> Res
         (LatchedStop | Faulted, Home | Arm) => Refuse(Reason::ResetFirst),
 
         (Disarmed, Arm) if !conditions.homed => Refuse(Reason::HomeFirst),
+        (Disarmed | Ready, Arm) if conditions.game_master_absent => Refuse(Reason::GameMasterAbsent),
         (Disarmed | Ready, Arm) => Go(Following),
         (Homing, Arm) => Refuse(Reason::WaitForHoming),
         (Following, Arm) => AlreadySo(Reason::ArmedAlready),
@@ -198,7 +201,7 @@ mod tests {
     use Response::{AlreadySo, Go, Refuse};
 
     fn conditions(homed: bool, cause: Option<Reason>) -> Conditions {
-        Conditions { homed, moves: false, cause_still_there: cause }
+        Conditions { homed, moves: false, game_master_absent: false, cause_still_there: cause }
     }
 
     #[test]
@@ -269,6 +272,19 @@ mod tests {
             for request in [RequestKind::Home, RequestKind::Arm] {
                 let response = respond(mode, request, &moves);
                 assert!(!matches!(response, Go(_)), "{mode:?} {request:?}: {response:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn nobody_arms_without_the_game_master_who_is_needed_and_everything_else_is_as_with_one() {
+        for mode in Mode::ALL {
+            for request in RequestKind::ALL {
+                let with = respond(mode, request, &conditions(true, None));
+                let absent = Conditions { game_master_absent: true, ..conditions(true, None) };
+                let without = respond(mode, request, &absent);
+                let arms = with == Go(Mode::Following);
+                assert_eq!(without, if arms { Refuse(Reason::GameMasterAbsent) } else { with });
             }
         }
     }

@@ -65,6 +65,8 @@ pub enum Observation {
     Machine(MachineReport),
     /// What the digital inputs say; it holds until the next.
     Inputs(Inputs),
+    /// Whether a dashboard of somebody who may arm is connected (R11); it holds until the next.
+    GameMaster(bool),
     /// The control loop began a step more than one period late (R9).
     DeadlineMissed,
     /// The control loop began a step in time.

@@ -106,6 +106,12 @@ pub enum Reason {
     StepsInTime,
     /// R9: so many steps in a row began late.
     StepsLate(u32),
+    /// R11: this machine may be armed without a game master's dashboard.
+    GameMasterNotNeeded,
+    /// R11: a game master's dashboard is connected.
+    GameMasterPresent,
+    /// R11, arm: no game master's dashboard is connected, and one is needed.
+    GameMasterAbsent,
     /// R12: no input that notices intruders is set up.
     NoIntruderInput,
     /// R12: every input that notices intruders is inactive.

@@ -57,8 +57,11 @@ fn happenings() -> Vec<Happening> {
     for request in RequestKind::ALL {
         for homed in [false, true] {
             for moves in [false, true] {
-                for cause_still_there in [None, Some(Reason::NoAnswerYet)] {
-                    all.push(Happening::Asked(request, Conditions { homed, moves, cause_still_there }));
+                for game_master_absent in [false, true] {
+                    for cause_still_there in [None, Some(Reason::NoAnswerYet)] {
+                        let conditions = Conditions { homed, moves, game_master_absent, cause_still_there };
+                        all.push(Happening::Asked(request, conditions));
+                    }
                 }
             }
         }
@@ -141,6 +144,8 @@ fn arm_and_home_need_rest_and_arm_a_home() {
         if let Happening::Asked(request @ (RequestKind::Arm | RequestKind::Home), conditions) = &happening
             && from != to
         {
+            let may_arm = *request == RequestKind::Home || !conditions.game_master_absent;
+            assert!(may_arm, "{from:?} -- {happening:?} --> {to:?}");
             assert!(!conditions.moves, "{from:?} -- {happening:?} --> {to:?}");
             let homed = conditions.homed || from.mode == Mode::Ready;
             assert!(*request == RequestKind::Home || homed, "{from:?} -- {happening:?} --> {to:?}");

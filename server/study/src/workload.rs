@@ -131,6 +131,7 @@ impl Workload {
             standing: None,
             kept_from: KeptFrom::Everybody,
             v_h_mps: 1.6,
+            needs_game_master: false,
             latched_because: None,
         };
         let mut workload = Self {

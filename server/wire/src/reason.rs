@@ -180,6 +180,12 @@ pub enum Reason {
         /// How many in a row.
         steps: u32,
     },
+    /// R11: this machine may be armed without a game master's dashboard.
+    GameMasterNotNeeded,
+    /// R11: kept.
+    GameMasterPresent,
+    /// R11, arm: no game master's dashboard is connected, and one is needed.
+    GameMasterAbsent,
     /// R12: no input that notices intruders is set up.
     NoIntruderInput,
     /// R12: kept.

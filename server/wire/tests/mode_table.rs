@@ -50,12 +50,13 @@ fn table(columns: &[&str], cells: impl Fn(Mode) -> Vec<String>) -> String {
 
 /// What is answered when nothing stands against it, then what each condition changes.
 fn response_cell(mode: Mode, request: RequestKind) -> String {
-    let good = Conditions { homed: true, moves: false, cause_still_there: None };
+    let good = Conditions { homed: true, moves: false, game_master_absent: false, cause_still_there: None };
     let usual = response(mode, request, &good);
     let mut text = usual.clone();
     for (condition, conditions) in [
         ("moves", Conditions { moves: true, ..good.clone() }),
         ("not homed", Conditions { homed: false, ..good.clone() }),
+        ("no game master where one is needed", Conditions { game_master_absent: true, ..good.clone() }),
         ("cause there", Conditions { cause_still_there: Some(still_there()), ..good.clone() }),
     ] {
         let other = response(mode, request, &conditions);

@@ -218,10 +218,10 @@ export const help: HelpText = {
       clears: "1 s after the client is back, or after you have confirmed that the person left.",
     },
     R11: {
-      watches: "Meant to be: that a game master’s dashboard is connected while the machine is armed.",
-      happens: "Nothing in this version.",
-      you: "Stay at the desk while the machine is armed. Nobody watches that for you.",
-      clears: "There is nothing to clear.",
+      watches: "That a dashboard of somebody who may arm is connected and answers. By default a real machine asks for one, the simulated one does not (safety.game_master).",
+      happens: "Without one, Arm is refused. When the last one goes while the machine is armed, that is shown and recorded; the column goes on.",
+      you: "Stay at the desk while the machine is armed; open the dashboard again.",
+      clears: "By itself, once such a dashboard is connected.",
     },
     R12: {
       watches: "The inputs that notice people without a headset: a light curtain, a mat, a camera. One that is silent or cut counts as active.",

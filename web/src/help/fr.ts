@@ -218,10 +218,10 @@ export const help: HelpText = {
       clears: "1 s après le retour du client, ou après que vous avez confirmé le départ de la personne.",
     },
     R11: {
-      watches: "Prévu : le poste d’un maître du jeu est connecté tant que la machine est armée.",
-      happens: "Rien dans cette version.",
-      you: "Restez au poste tant que la machine est armée. Personne ne le surveille pour vous.",
-      clears: "Il n’y a rien à lever.",
+      watches: "Qu’un tableau de bord de quelqu’un qui peut armer soit connecté et réponde. Par défaut une machine réelle en exige un, la machine simulée non (safety.game_master).",
+      happens: "Sans lui, Armer est refusé. Quand le dernier s’en va alors que la machine est armée, c’est affiché et consigné ; la colonne continue.",
+      you: "Restez au poste tant que la machine est armée ; rouvrez le tableau de bord.",
+      clears: "De lui-même, dès qu’un tel tableau de bord est connecté.",
     },
     R12: {
       watches: "Les entrées qui remarquent les personnes sans casque : barrière lumineuse, tapis, caméra. Une entrée muette ou coupée compte comme active.",

@@ -11,7 +11,7 @@ export const STOPS = ["R4", "R1", "R2", "R5", "R6", "R7", "R8", "R9", "R10", "R1
 export type StopName = (typeof STOPS)[number];
 
 /** Rules that this version shows and does not watch yet. */
-export const UNWATCHED: ReadonlySet<RuleName> = new Set(["R11", "R14"]);
+export const UNWATCHED: ReadonlySet<RuleName> = new Set(["R14"]);
 
 /** What the help says of a rule. */
 export interface RuleHelp {

@@ -159,6 +159,11 @@ pub fn all() -> Vec<Key> {
     keys.extend(roboclaw::keys());
     keys.extend([
         Key::new(
+            "safety.game_master",
+            "Whether a game master's dashboard must be connected to arm (R11): \"always\", \"never\", or \"by_machine\": for every machine but the simulated one.",
+            Place::GameMaster(|c| &mut c.safety.game_master),
+        ),
+        Key::new(
             "safety.inputs",
             "Digital inputs: of kind \"stop\" (latched, R4) or \"intruder\" (protective stop, R12), from a serial port, a pseudo-terminal or a FIFO with a line \
              \"0\" or \"1\" at least every heartbeat_timeout_secs, or from a GPIO's value file. Silent, cut or garbled counts as active.",

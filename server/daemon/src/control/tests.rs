@@ -111,6 +111,7 @@ fn start() -> Stage {
         standing: None,
         kept_from: KeptFrom::Everybody,
         v_h_mps: 1.6,
+        needs_game_master: false,
         latched_because: None,
     };
     let (events, events_out) = mpsc::channel(1_024);

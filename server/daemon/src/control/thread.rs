@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::sync_channel;
 use std::time::{Duration, Instant};
 
@@ -31,6 +31,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
     let (asks, asks_out) = sync_channel(setup.request_queue);
     let (facts, facts_out) = sync_channel(FACT_QUEUE);
     let stops = Arc::new(StopLaneName::ALL.map(|_| StopLane::default()));
+    let game_masters = Arc::new(AtomicUsize::new(0));
     let quit = Arc::new(AtomicBool::new(false));
     let events_dropped = Arc::new(AtomicU64::new(0));
     let ended = watch::Sender::new(None);
@@ -74,6 +75,7 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
         stops_seen: [0; 4],
         stops_unacknowledged: None,
         input_stops: Vec::new(),
+        game_masters: game_masters.clone(),
         quit: quit.clone(),
         events: setup.events,
         events_dropped: events_dropped.clone(),
@@ -98,7 +100,16 @@ pub fn start(setup: Setup) -> std::io::Result<Control> {
         drop(run);
         ended.send_replace(Some(end));
     })?;
-    Ok(Control { asks, facts, stops, quit, events_dropped, published: published_out, ended: ended_out })
+    Ok(Control {
+        asks,
+        facts,
+        stops,
+        game_masters,
+        quit,
+        events_dropped,
+        published: published_out,
+        ended: ended_out,
+    })
 }
 
 /// Everything that the thread owns.
@@ -117,6 +128,7 @@ struct Run {
     /// Stops by digital inputs whose command the machine has not confirmed yet, with the time when it was vetted. Few:
     /// one a second of each line at most.
     input_stops: Vec<(InputStop, Time)>,
+    game_masters: Arc<AtomicUsize>,
     quit: Arc<AtomicBool>,
     events: Sender<Record>,
     events_dropped: Arc<AtomicU64>,
@@ -168,6 +180,8 @@ impl Run {
         self.drive.read(&mut self.engine, now);
         let mut input_stops = Vec::new();
         self.engine.observe(now, Observation::Inputs(self.inputs.look(now, &mut input_stops)));
+        let present = self.game_masters.load(Ordering::Acquire) > 0;
+        self.engine.observe(now, Observation::GameMaster(present));
         self.inbox.tell(&mut self.engine, now);
         let mut answers = Vec::new();
         self.inbox.ask(&mut self.engine, now, &mut answers);

@@ -6,6 +6,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade, close_code};
 use axum::extract::{Extension, State};
 use axum::http::StatusCode;
@@ -18,8 +19,10 @@ use covr_wire::reason::Reason;
 use futures_util::StreamExt;
 use futures_util::stream::{SplitSink, SplitStream};
 use tokio::sync::broadcast::error::RecvError;
-use tokio::sync::{OwnedSemaphorePermit, mpsc};
+use tokio::sync::{OwnedSemaphorePermit, mpsc, watch};
+use tokio::time::MissedTickBehavior;
 
+use super::attendance::{PING_EVERY, attend};
 use super::{Gone, TAKEN_BACK, close, send, why_closing};
 use crate::access::table::dashboard_key;
 use crate::access::{Caller, Standing};
@@ -43,9 +46,12 @@ pub async fn upgrade(
 async fn serve(app: Arc<App>, socket: WebSocket, caller: Caller, _seat: OwnedSemaphorePermit) {
     let (sink, stream) = socket.split();
     let (answers, answers_out) = mpsc::channel(ANSWER_QUEUE);
+    let heard = watch::Sender::new(Instant::now());
+    let heard_last = heard.subscribe();
     tokio::select! {
         _ = write(app.clone(), sink, caller.clone(), answers_out) => {}
-        () = read(app, stream, caller, answers) => {}
+        () = read(app.clone(), stream, caller.clone(), answers, heard) => {}
+        () = attend(&app, &caller, &heard_last) => {}
     }
 }
 
@@ -66,6 +72,8 @@ async fn write(
     stage.mark_unchanged();
     let first: Snapshot = wire_snapshot(&app, &app.control.published()).await;
     say(&mut sink, &ToDashboard::Snapshot(Box::new(first))).await?;
+    let mut ping_due = tokio::time::interval(PING_EVERY);
+    ping_due.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
         tokio::select! {
             biased;
@@ -77,6 +85,7 @@ async fn write(
                     return close(&mut sink, close_code::POLICY, TAKEN_BACK).await;
                 }
             }
+            _ = ping_due.tick() => send(&mut sink, Message::Ping(Bytes::new())).await?,
             Some(answer) = answers.recv() => say(&mut sink, &answer).await?,
             Ok(()) = stage.changed() => say(&mut sink, &scene(&app)).await?,
             event = events.recv() => match event {
@@ -101,9 +110,11 @@ async fn read(
     mut stream: SplitStream<WebSocket>,
     caller: Caller,
     answers: mpsc::Sender<ToDashboard>,
+    heard: watch::Sender<Instant>,
 ) {
     while let Some(Ok(message)) = stream.next().await {
         let received_at = Instant::now();
+        heard.send_replace(received_at);
         let text = match message {
             Message::Text(text) => text.to_string(),
             Message::Binary(_) => "\"a binary frame\"".into(),

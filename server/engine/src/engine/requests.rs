@@ -11,6 +11,7 @@ use crate::machine::Homing;
 use crate::mode::{self, Conditions, Mode, RequestKind, Response};
 use crate::observation::PersonId;
 use crate::reason::Reason;
+use crate::safety::supervisor::GameMaster;
 use crate::scene::Scene;
 use crate::scene::footprint::KeepOut;
 use crate::snapshot::RuleId;
@@ -94,6 +95,7 @@ impl Engine {
         Conditions {
             homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
             moves: self.report.is_some() && !self.rests(now),
+            game_master_absent: self.game_master() == GameMaster::Absent,
             cause_still_there: self
                 .stop_input()
                 .map(|reason| Reason::CauseStillThere { rule: RuleId(4), because: Box::new(reason) })

@@ -1,6 +1,7 @@
 //! The engine as a whole, on virtual time, in front of a machine that does exactly what it is told.
 
 mod foretold;
+mod game_master;
 mod inputs;
 mod modes;
 mod rules;
@@ -64,6 +65,7 @@ impl Room {
             standing: None,
             kept_from: KeptFrom::Everybody,
             v_h_mps: 1.6,
+            needs_game_master: false,
             latched_because: latched_because.map(str::to_owned),
         };
         Self {

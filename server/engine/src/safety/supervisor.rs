@@ -34,10 +34,25 @@ pub struct Watched<'a> {
     pub persons: &'a [Person],
     /// What the inputs that notice intruders say.
     pub intruder: &'a InputLevel,
+    /// Whether a game master's dashboard is needed, and connected.
+    pub game_master: GameMaster,
+    /// The machine follows people, or will when a protective stop is over.
+    pub armed: bool,
     /// Somebody who looked said that nobody is in the arena.
     pub arena_confirmed_clear: bool,
     /// The machine's travel.
     pub travel: &'a Travel,
+}
+
+/// Whether a game master is there to see what happens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GameMaster {
+    /// This machine is armed without one.
+    NotNeeded,
+    /// A dashboard of somebody who may arm is connected.
+    Present,
+    /// None is.
+    Absent,
 }
 
 /// What the rules demand, the gravest first in order.
@@ -85,7 +100,8 @@ impl Supervisor {
             status: if n == 4 { RuleStatus::Clear } else { RuleStatus::Idle },
             reason: match n {
                 4 => Reason::StopNotPressed,
-                11 | 14 => Reason::NotWatched,
+                11 => Reason::GameMasterNotNeeded,
+                14 => Reason::NotWatched,
                 12 => Reason::NoIntruderInput,
                 _ => Reason::NothingToWatch,
             },
@@ -119,6 +135,7 @@ impl Supervisor {
             InputLevel::Silent(input) => (RuleStatus::Breached, Reason::InputSilent(input.clone())),
         };
         self.set(RuleId(12), status, watched.now, events, || reason);
+        self.watch_game_master(watched, events);
         let missed = self.missed_in_a_row;
         let late = missed >= self.parameters.missed_deadlines;
         self.set(RuleId(9), breach_if(late), watched.now, events, || {
@@ -307,6 +324,17 @@ impl Supervisor {
         self.set(RuleId(16), status, now, events, || {
             if unsure { Reason::ArenaUnconfirmed } else { Reason::ArenaAccountedFor }
         });
+    }
+
+    /// R11 stops nothing: without a game master nobody arms, and one who goes from an armed machine is told of.
+    fn watch_game_master(&mut self, watched: &Watched<'_>, events: &mut Vec<EventKind>) {
+        let (status, reason) = match watched.game_master {
+            GameMaster::NotNeeded => (RuleStatus::Idle, Reason::GameMasterNotNeeded),
+            GameMaster::Present => (RuleStatus::Clear, Reason::GameMasterPresent),
+            GameMaster::Absent if watched.armed => (RuleStatus::Breached, Reason::GameMasterAbsent),
+            GameMaster::Absent => (RuleStatus::Limiting, Reason::GameMasterAbsent),
+        };
+        self.set(RuleId(11), status, watched.now, events, || reason);
     }
 
     fn set(

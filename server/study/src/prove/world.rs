@@ -69,6 +69,7 @@ impl World {
             standing: None,
             kept_from: KeptFrom::Everybody,
             v_h_mps,
+            needs_game_master: false,
             latched_because: None,
         };
         let told = format!(

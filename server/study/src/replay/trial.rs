@@ -256,6 +256,7 @@ impl<'a> Playback<'a> {
             standing: None,
             kept_from: conduct.kept_from,
             v_h_mps: conduct.v_h_mps,
+            needs_game_master: false,
             latched_because: None,
         };
         let random = Random::seeded(seed);

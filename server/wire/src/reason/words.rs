@@ -78,6 +78,13 @@ impl fmt::Display for Reason {
             Self::ControllerAnswers => write!(f, "the controller answers"),
             Self::StepsInTime => write!(f, "control steps begin in time"),
             Self::StepsLate { steps } => write!(f, "{steps} control steps in a row began late"),
+            Self::GameMasterNotNeeded => {
+                write!(f, "this machine is armed without a game master's dashboard too")
+            }
+            Self::GameMasterPresent => write!(f, "a game master's dashboard is connected"),
+            Self::GameMasterAbsent => {
+                write!(f, "no game master's dashboard is connected, and arming needs one")
+            }
             Self::NoIntruderInput => write!(f, "no intruder input is set up"),
             Self::NoIntruder => write!(f, "no intruder"),
             Self::Intruder { input } => {

@@ -121,7 +121,7 @@ trouble: MachineTrouble, } | { "id": "controller_answers" } | { "id": "steps_in_
 /**
  * How many in a row.
  */
-steps: number, } | { "id": "no_intruder_input" } | { "id": "no_intruder" } | { "id": "intruder", 
+steps: number, } | { "id": "game_master_not_needed" } | { "id": "game_master_present" } | { "id": "game_master_absent" } | { "id": "no_intruder_input" } | { "id": "no_intruder" } | { "id": "intruder", 
 /**
  * Its name.
  */

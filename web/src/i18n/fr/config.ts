@@ -53,6 +53,7 @@ export const config: Readonly<Record<string, string>> = {
   "machine.roboclaw.y.velocity_i": "Son gain intégral.",
   "machine.roboclaw.y.velocity_d": "Son gain dérivé.",
   "machine.roboclaw.y.velocity_qpps": "Sa vitesse à pleine puissance, impulsions par seconde ; 0 laisse toute la boucle telle que la carte l’a en mémoire.",
+  "safety.game_master": "S’il faut que le tableau de bord d’un maître du jeu soit connecté pour armer (R11) : « always » (toujours), « never » (jamais) ou « by_machine » : pour toute machine sauf la machine simulée.",
   "safety.inputs": "Entrées numériques : de genre « stop » (verrouillé, R4) ou « intruder » (arrêt de protection, R12), depuis un port série, un pseudo-terminal ou un FIFO avec une ligne « 0 » ou « 1 » au moins toutes les heartbeat_timeout_secs, ou depuis le fichier de valeur d’un GPIO. Muette, coupée ou illisible compte comme active.",
   "people.intention_rule": "La règle d’intention, par son nom.",
   "people.intention_parameters": "Un fichier de paramètres pour la règle d’intention, tel que l’écrit covr fit ; vide pour ceux par défaut.",

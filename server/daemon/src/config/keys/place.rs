@@ -11,7 +11,7 @@ use covr_gantry::roboclaw::settings::HomeBy;
 use covr_wire::accepts::Accepts;
 use toml::Value;
 
-use crate::config::{Config, Input, LogFormat, MachineKind, inputs};
+use crate::config::{Config, GameMasterNeeded, Input, LogFormat, MachineKind, inputs};
 
 /// Where a key's value goes, and what it must be.
 #[derive(Clone)]
@@ -25,6 +25,7 @@ pub enum Place {
     PathOrNone(fn(&mut Config) -> &mut Option<PathBuf>),
     Address(fn(&mut Config) -> &mut SocketAddr),
     Origins(fn(&mut Config) -> &mut Vec<String>),
+    GameMaster(fn(&mut Config) -> &mut GameMasterNeeded),
     Inputs(fn(&mut Config) -> &mut Vec<Input>),
     Rectangle(fn(&mut Config) -> &mut [f64; 4]),
     Point(fn(&mut Config) -> &mut [f64; 3]),
@@ -49,6 +50,7 @@ impl Place {
             Place::PathOrNone(_) => Accepts::PathOrNone,
             Place::Address(_) => Accepts::Address,
             Place::Origins(_) => Accepts::Origins,
+            Place::GameMaster(_) => one_of(GameMasterNeeded::ALL.map(GameMasterNeeded::name)),
             Place::Inputs(_) => Accepts::Inputs,
             Place::Rectangle(_) => Accepts::Rectangle,
             Place::Point(_) => Accepts::Point,
@@ -81,6 +83,7 @@ impl Place {
             Place::Origins(place) => {
                 Value::Array(place(&mut config).iter().cloned().map(Value::String).collect())
             }
+            Place::GameMaster(place) => Value::String(place(&mut config).name().into()),
             Place::Inputs(place) => inputs::value(place(&mut config)),
             Place::Rectangle(place) => {
                 Value::Array(place(&mut config).iter().map(|v| Value::Float(*v)).collect())
@@ -132,6 +135,7 @@ impl Place {
             Place::Origins(place) => {
                 *place(config) = value.as_array()?.iter().map(origin).collect::<Option<_>>()?;
             }
+            Place::GameMaster(place) => *place(config) = GameMasterNeeded::parse(value.as_str()?)?,
             Place::Inputs(place) => *place(config) = inputs::parse(value)?,
             Place::Rectangle(place) => {
                 let corners = lengths::<4>(value)?;
