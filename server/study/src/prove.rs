@@ -3,6 +3,7 @@
 
 mod adversary;
 mod faults;
+mod inputs;
 mod operator;
 mod proof;
 mod world;
@@ -35,7 +36,7 @@ pub struct Findings {
     pub steps: u64,
     /// Worlds.
     pub worlds: u64,
-    /// Violations of the true and of the commanded motion.
+    /// Violations of the true and of the commanded motion, and ticks of motion against an input.
     pub violations: u64,
     /// Ticks in which the column moved.
     pub moving_ticks: u64,
@@ -98,7 +99,8 @@ pub fn prove(campaign: &Campaign, progress: &(dyn Fn(u64) + Sync)) -> Result<Fin
 /// it does not need.
 pub fn shrink(proof: &Proof) -> Proof {
     let mut least = proof.clone();
-    let parts = [Part::Faults, Part::Operator].into_iter().chain((0..proof.people).map(Part::Person));
+    let parts =
+        [Part::Faults, Part::Operator, Part::Inputs].into_iter().chain((0..proof.people).map(Part::Person));
     for part in parts.filter(|part| !proof.case.without.contains(part)) {
         let mut case = least.case.clone();
         case.without.push(part);
@@ -119,17 +121,18 @@ pub fn shrink(proof: &Proof) -> Proof {
 }
 
 impl Part {
-    /// The part of this name: operator, faults, person-0, person-1, ...
+    /// The part of this name: operator, faults, inputs, person-0, person-1, ...
     pub fn parse(name: &str) -> Result<Self, String> {
         match name {
             "operator" => Ok(Self::Operator),
             "faults" => Ok(Self::Faults),
+            "inputs" => Ok(Self::Inputs),
             other => other
                 .strip_prefix("person-")
                 .and_then(|number| number.parse().ok())
                 .map(Self::Person)
                 .ok_or_else(|| {
-                    format!("\"{other}\": expected operator, faults, person-0, person-1 or person-2")
+                    format!("\"{other}\": expected operator, faults, inputs, person-0, person-1 or person-2")
                 }),
         }
     }
@@ -140,6 +143,7 @@ impl fmt::Display for Part {
         match self {
             Self::Operator => f.write_str("operator"),
             Self::Faults => f.write_str("faults"),
+            Self::Inputs => f.write_str("inputs"),
             Self::Person(number) => write!(f, "person-{number}"),
         }
     }
@@ -163,6 +167,13 @@ impl fmt::Display for Findings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for proof in &self.shrunk {
             writeln!(f, "{}\n  {}", proof.case, proof.told)?;
+            if proof.moved_while_input > 0 {
+                writeln!(
+                    f,
+                    "  {} ticks of motion long after an input became active",
+                    proof.moved_while_input
+                )?;
+            }
             for violation in proof.truth.first.iter().chain(&proof.commanded.first).take(SHOWN_A_WORLD) {
                 writeln!(f, "  {violation}")?;
             }
@@ -199,7 +210,7 @@ mod tests {
         let without = vec![Part::Faults, Part::Person(1)];
         let case = Case { seed: 7, steps: 100, v_h_mps: Some(1.6), without };
         assert_eq!(case.to_string(), "covr prove --steps 100 --seed 7 --v-h 1.6 --without faults,person-1");
-        for part in [Part::Faults, Part::Operator, Part::Person(2)] {
+        for part in [Part::Faults, Part::Operator, Part::Inputs, Part::Person(2)] {
             assert_eq!(Part::parse(&part.to_string()), Ok(part));
         }
         assert!(Part::parse("person-x").unwrap_err().contains("expected operator"));

@@ -10,6 +10,7 @@ use covr_engine::time::Span;
 
 use super::adversary::{Adversary, Surroundings};
 use super::faults::Nuisance;
+use super::inputs::Sensors;
 use super::operator::Operator;
 use super::world::World;
 use crate::checker::Verdict;
@@ -38,6 +39,8 @@ pub enum Part {
     Operator,
     /// Faults of the link to the machine and of the control thread.
     Faults,
+    /// Digital inputs that become active or fall silent.
+    Inputs,
 }
 
 /// What a case led to.
@@ -53,6 +56,8 @@ pub struct Proof {
     pub truth: Verdict,
     /// Of the commanded motion.
     pub commanded: Verdict,
+    /// Ticks in which the column moved long after an input had become active.
+    pub moved_while_input: u64,
     /// Steps in the mode `following`.
     pub following: u64,
     /// The first step after which a violation was found.
@@ -62,9 +67,9 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// Violations of both motions.
+    /// Violations of both motions, and motion against an input.
     pub fn violations(&self) -> u64 {
-        self.truth.violations() + self.commanded.violations()
+        self.truth.violations() + self.commanded.violations() + self.moved_while_input
     }
 }
 
@@ -90,6 +95,8 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
     let mut operator =
         Operator::new(random.fork(), std::mem::take(&mut world.scenes), now, !is_left_out(Part::Operator));
     let mut nuisance = if is_left_out(Part::Faults) { None } else { Some(Nuisance::new(random.fork(), now)) };
+    let mut sensors = if is_left_out(Part::Inputs) { None } else { Some(Sensors::new(random.fork(), now)) };
+    let mut moved_while_input = 0;
     let mut digest = DefaultHasher::new();
     let mut following = 0;
     let mut violated_at = None;
@@ -120,6 +127,9 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
             heads.extend(doings.truth);
         }
         operator.act(control, &heads);
+        if let Some(sensors) = &mut sensors {
+            sensors.step(control);
+        }
         let runs = nuisance.as_mut().is_none_or(|nuisance| nuisance.step(control));
         let truth = if runs {
             let stepped = control.step(&heads);
@@ -129,6 +139,8 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
             control.miss_step(&heads)
         };
         column = (truth.position, truth.velocity);
+        let must_rest = sensors.as_ref().is_some_and(|sensors| sensors.demand_rest(now));
+        moved_while_input += u64::from(must_rest && truth.velocity.norm() > AT_REST_MPS);
         following += u64::from(control.engine().mode() == Mode::Following);
         if step % snapshot_every == 0 {
             format!("{:?}", control.engine().snapshot(now)).hash(&mut digest);
@@ -137,7 +149,10 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
             format!("{event:?}").hash(&mut digest);
         }
         if violated_at.is_none()
-            && control.true_verdict().violations() + control.commanded_verdict().violations() > 0
+            && control.true_verdict().violations()
+                + control.commanded_verdict().violations()
+                + moved_while_input
+                > 0
         {
             violated_at = Some(step);
         }
@@ -148,6 +163,7 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
         people,
         truth: control.true_verdict().clone(),
         commanded: control.commanded_verdict().clone(),
+        moved_while_input,
         following,
         violated_at,
         digest: digest.finish(),
@@ -175,3 +191,6 @@ fn remember(digest: &mut DefaultHasher, stepped: &Stepped) {
         }
     }
 }
+
+/// Slower than this the column rests, m/s.
+const AT_REST_MPS: f64 = 0.02;
