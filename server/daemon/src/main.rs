@@ -51,10 +51,10 @@ fn serve(options: Serve) -> anyhow::Result<()> {
     let _logs = logs::start(&loaded.config.log)?;
     runtime()?.block_on(async {
         // Before anybody can know of the server: without a listener the signal would end the process.
-        let presses = stop_signal()?;
+        let (presses, told) = (stop_signal()?, told_by_signal());
         let server = Server::start(loaded).await?;
         tokio::spawn(stop_at_signal(server.app().clone(), presses));
-        server.run_until(told_by_signal()).await
+        server.run_until(told).await
     })
 }
 

@@ -79,6 +79,8 @@ impl Server {
         let path = &config.server.database;
         let store = Store::open(path).await.with_context(|| format!("database {}", path.display()))?;
         let left_over = store.take_over().await.context("database")?;
+        // Who cannot write could not keep a latched stop.
+        store.probe().await.with_context(|| format!("database {} cannot be written", path.display()))?;
         if left_over.interrupted_sessions > 0 {
             tracing::warn!(
                 sessions = left_over.interrupted_sessions,
@@ -260,17 +262,18 @@ impl Server {
     }
 }
 
-/// SIGINT or SIGTERM; the reason to end.
-pub async fn told_by_signal() -> String {
-    let (Ok(mut interrupt), Ok(mut terminate)) =
-        (signal(SignalKind::interrupt()), signal(SignalKind::terminate()))
-    else {
-        tracing::error!("cannot listen for signals");
-        return std::future::pending().await;
-    };
-    tokio::select! {
-        _ = interrupt.recv() => "SIGINT".into(),
-        _ = terminate.recv() => "SIGTERM".into(),
+/// SIGINT or SIGTERM from the call on, not from the first poll; the reason to end.
+pub fn told_by_signal() -> impl Future<Output = String> {
+    let listening = (signal(SignalKind::interrupt()), signal(SignalKind::terminate()));
+    async move {
+        let (Ok(mut interrupt), Ok(mut terminate)) = listening else {
+            tracing::error!("cannot listen for signals");
+            return std::future::pending().await;
+        };
+        tokio::select! {
+            _ = interrupt.recv() => "SIGINT".into(),
+            _ = terminate.recv() => "SIGTERM".into(),
+        }
     }
 }
 
