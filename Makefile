@@ -15,7 +15,9 @@ export COVR_PYTHON ?= $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/python/bin/pyth
 # Where `make run` listens.
 BIND ?= 127.0.0.1:7878
 
-.PHONY: help run test bench prove setup build fmt check-format clippy test-rust test-web test-e2e
+SECONDS ?= 3600
+
+.PHONY: help run test bench prove soak setup build fmt check-format clippy test-rust test-web test-e2e
 
 help: ## This list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -32,6 +34,9 @@ bench: ## Every figure that the server promises, into server/BENCHMARKS.md; BENC
 prove: ## Ten million steps against people at their worst; STEPS=100000000 SEED=2 for more and others
 	cargo build --locked --release --package covr-server
 	$(or $(CARGO_TARGET_DIR),target)/release/covr prove --steps $(or $(STEPS),10000000) --seed $(or $(SEED),1)
+
+soak: ## One hour of the real server with faults on: no stop missed, no acknowledged write lost, no growth; SECONDS=600 for less
+	COVR_SOAK_SECS=$(SECONDS) cargo test --locked --package covr-tests --test soak -- --nocapture
 
 setup: ## Install what the tests need and this machine lacks
 	tests/setup

@@ -152,21 +152,61 @@ fn the_server_never_says_that_everything_is_simulated() {
 
 #[test]
 fn every_test_that_the_hazard_table_names_is_there() {
-    let table = std::fs::read_to_string(top().join("server/SAFETY.md")).expect("the hazard table");
+    let count = tests_named("# Hazards", "| hazard", 4);
+    assert!(count > 30, "{count} tests named");
+}
+
+#[test]
+fn every_test_that_the_table_of_faults_names_is_there() {
+    let count = tests_named("Faults around the server", "| fault", 2);
+    assert!(count > 13, "{count} tests named");
+}
+
+/// How many tests this column of a table in SAFETY.md names. Panics when one is not there, or a row has none.
+fn tests_named(section: &str, head: &str, column: usize) -> usize {
+    let text = std::fs::read_to_string(top().join("server/SAFETY.md")).expect("SAFETY.md");
     let mut code = sources(&top().join("server"));
     code.extend(sources(&top().join("tests")));
-    let is_there = |name: &str| code.iter().any(|(_, text)| text.contains(&format!("fn {name}(")));
-    let hazards = table.split("\n## ").next().unwrap_or_default();
-    let rows = hazards.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| hazard"));
+    let is_there = |name: &str| {
+        let script = name.starts_with("tests/") && top().join(name).exists();
+        script || code.iter().any(|(_, text)| text.contains(&format!("fn {name}(")))
+    };
+    let table = text.split("\n## ").find(|part| part.starts_with(section)).expect("the section");
+    let rows = table.lines().filter(|line| line.starts_with("| ") && !line.starts_with(head));
     let mut count = 0;
     for row in rows {
-        let shown_by = row.split(" | ").nth(4).unwrap_or_else(|| panic!("five columns: {row}"));
+        let shown_by = row.split(" | ").nth(column).unwrap_or_else(|| panic!("more columns: {row}"));
         let names: Vec<&str> = shown_by.split('`').skip(1).step_by(2).collect();
-        assert!(!names.is_empty(), "a hazard without a test: {row}");
+        assert!(!names.is_empty(), "a row without a test: {row}");
         for name in names {
             assert!(is_there(name), "SAFETY.md names the test {name}, which is not there");
             count += 1;
         }
     }
-    assert!(count > 30, "{count} tests named");
+    count
+}
+
+/// The wall clock may jump. It dates the record and ends tokens; what the machine does goes by the monotonic clock alone.
+#[test]
+fn nothing_that_moves_or_stops_the_machine_goes_by_the_wall_clock() {
+    let may_date =
+        ["clock.rs", "recording.rs", "sessions.rs", "recordings.rs", "roster.rs", "token_command.rs"];
+    for room in ["engine", "wire", "gantry", "study", "daemon"] {
+        for (path, text) in sources(&top().join("server").join(room).join("src")) {
+            let dates = may_date.iter().any(|name| path.ends_with(name)) && room == "daemon";
+            assert!(dates || !text.contains("SystemTime"), "{} goes by the wall clock", path.display());
+        }
+    }
+    for part in ["control.rs", "control", "inputs.rs", "inputs", "ws"] {
+        let path = top().join("server/daemon/src").join(part);
+        let files = if path.is_dir() {
+            sources(&path)
+        } else {
+            vec![(path.clone(), std::fs::read_to_string(&path).expect("text"))]
+        };
+        assert!(!files.is_empty(), "{part}");
+        for (path, text) in files {
+            assert!(!text.contains("wall_now"), "{} goes by the wall clock", path.display());
+        }
+    }
 }
