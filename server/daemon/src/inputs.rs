@@ -64,11 +64,11 @@ impl InputLines {
     }
 
     /// For the control thread: what they say now, with every new stop put to `stops`. An activation shorter than a step
-    /// is said once all the same.
-    pub fn look(&mut self, now: Time, stops: &mut Vec<InputStop>) -> Inputs {
+    /// is said once all the same. `latched`: the machine is in a latched stop already.
+    pub fn look(&mut self, now: Time, latched: bool, stops: &mut Vec<InputStop>) -> Inputs {
         let mut inputs = Inputs::default();
         for line in &mut self.lines {
-            let level = match line.look(now, stops) {
+            let level = match line.look(now, latched, stops) {
                 Seen::Inactive => InputLevel::Inactive,
                 Seen::Active => InputLevel::Active(line.name.clone()),
                 Seen::Silent => InputLevel::Silent(line.name.clone()),
@@ -92,7 +92,7 @@ impl Drop for InputLines {
 }
 
 impl Line {
-    fn look(&mut self, now: Time, stops: &mut Vec<InputStop>) -> Seen {
+    fn look(&mut self, now: Time, latched: bool, stops: &mut Vec<InputStop>) -> Seen {
         let activations = self.lane.activations();
         let anew = std::mem::replace(&mut self.activations_seen, activations) != activations;
         let seen = match self.lane.look(now) {
@@ -101,10 +101,8 @@ impl Line {
         };
         let before = std::mem::replace(&mut self.seen, seen);
         let activated = seen != Seen::Inactive && (anew || before == Seen::Inactive);
-        if activated
-            && self.kind == InputKind::Stop
-            && self.noted_at.is_none_or(|at| now - at >= NOTED_ONCE_IN)
-        {
+        let chatters = latched && self.noted_at.is_some_and(|at| now - at < NOTED_ONCE_IN);
+        if activated && self.kind == InputKind::Stop && !chatters {
             self.noted_at = Some(now);
             let silent = seen == Seen::Silent;
             stops.push(InputStop { input: self.name.clone(), silent, since: self.lane.active_since(now) });
@@ -113,7 +111,7 @@ impl Line {
     }
 }
 
-/// A line that chatters stops each time, and is recorded once in this time.
+/// A line that chatters while the machine is stopped already is recorded once in this time.
 const NOTED_ONCE_IN: Span = Span::from_millis(1_000);
 
 #[cfg(test)]

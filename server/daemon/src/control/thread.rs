@@ -7,7 +7,7 @@ use std::sync::mpsc::sync_channel;
 use std::time::{Duration, Instant};
 
 use covr_engine::event::EventKind;
-use covr_engine::mode::RequestKind;
+use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::observation::Observation;
 use covr_engine::safety::vetted::{Action, Vetted};
 use covr_engine::time::Time;
@@ -178,8 +178,9 @@ impl Run {
     fn tick(&mut self) {
         let now = self.clock.now();
         self.drive.read(&mut self.engine, now);
-        let mut input_stops = Vec::new();
-        self.engine.observe(now, Observation::Inputs(self.inputs.look(now, &mut input_stops)));
+        let (latched, mut input_stops) = (self.engine.mode() == Mode::LatchedStop, Vec::new());
+        let inputs = self.inputs.look(now, latched, &mut input_stops);
+        self.engine.observe(now, Observation::Inputs(inputs));
         let present = self.game_masters.load(Ordering::Acquire) > 0;
         self.engine.observe(now, Observation::GameMaster(present));
         self.inbox.tell(&mut self.engine, now);

@@ -18,7 +18,7 @@ fn input(kind: InputKind, source: &Path, heartbeat_timeout_secs: f64) -> Input {
 fn until(lines: &mut InputLines, clock: Clock, what: impl Fn(&Inputs) -> bool) {
     let begun = Instant::now();
     loop {
-        let seen = lines.look(clock.now(), &mut Vec::new());
+        let seen = lines.look(clock.now(), false, &mut Vec::new());
         if what(&seen) {
             return;
         }
@@ -79,42 +79,46 @@ fn an_activation_shorter_than_a_step_is_seen_once() {
     let mut line = stop_line(&lane);
     let (now, mut stops) = (Time::from_micros(5_000), Vec::new());
     lane.say(false, now);
-    assert_eq!(line.look(now, &mut stops), Seen::Inactive);
+    assert_eq!(line.look(now, false, &mut stops), Seen::Inactive);
     lane.say(true, now);
     lane.say(false, now);
-    assert_eq!(line.look(now, &mut stops), Seen::Active);
+    assert_eq!(line.look(now, false, &mut stops), Seen::Active);
     assert_eq!(stops, [InputStop { input: "mat".into(), silent: false, since: now }]);
-    assert_eq!(line.look(now, &mut stops), Seen::Inactive);
+    assert_eq!(line.look(now, false, &mut stops), Seen::Inactive);
     assert_eq!(stops.len(), 1, "and noted once");
 }
 
 #[test]
-fn a_stop_is_noted_from_when_it_counts_as_active_and_a_chattering_line_once_a_second() {
+fn a_stop_is_noted_from_when_it_counts_as_active_and_a_line_that_chatters_then_once_a_second() {
     let lane = Arc::new(Lane::new(Span::from_millis(100)));
     let mut line = stop_line(&lane);
     let at = |millis: i64| Time::from_micros(1_000 * millis);
-    let mut look = |millis: i64| {
+    let mut look = |latched: bool, millis: i64| {
         let mut stops = Vec::new();
-        line.look(at(millis), &mut stops);
+        line.look(at(millis), latched, &mut stops);
         stops.pop().map(|stop| (stop.silent, stop.since))
     };
     lane.say(false, at(1));
-    assert_eq!(look(4), None);
+    assert_eq!(look(false, 4), None);
     lane.say(true, at(5));
     lane.say(true, at(7));
-    assert_eq!(look(8), Some((false, at(5))), "since the first active word");
-    assert_eq!(look(12), None);
+    assert_eq!(look(false, 8), Some((false, at(5))), "since the first active word");
+    assert_eq!(look(true, 12), None);
     for millis in (20..900).step_by(4) {
         lane.say(millis % 8 == 0, at(millis));
-        assert_eq!(look(millis + 1), None, "{millis} ms");
+        assert_eq!(look(true, millis + 1), None, "{millis} ms");
     }
+    lane.say(false, at(910));
+    assert_eq!(look(false, 912), None);
+    lane.say(true, at(914));
+    assert_eq!(look(false, 916), Some((false, at(914))), "after a reset it counts at once");
     lane.say(false, at(1_500));
-    assert_eq!(look(1_501), None);
-    assert_eq!(look(1_604), Some((true, at(1_600))), "silent since the last word's time was over");
+    assert_eq!(look(false, 1_501), None);
+    assert_eq!(look(false, 1_604), Some((true, at(1_600))), "silent since the last word's time was over");
     lane.say(false, at(3_000));
-    assert_eq!(look(3_001), None);
+    assert_eq!(look(false, 3_001), None);
     lane.lose(at(3_002));
-    assert_eq!(look(3_004), Some((true, at(3_002))));
+    assert_eq!(look(false, 3_004), Some((true, at(3_002))));
 }
 
 fn stop_line(lane: &Arc<Lane>) -> Line {
@@ -130,7 +134,7 @@ fn a_value_file_is_read_and_a_missing_one_is_active() {
     let clock = Clock::started_now();
     let inputs = [input(InputKind::Intruder, &path, 10.0)];
     let mut lines = InputLines::start(&inputs, clock).unwrap();
-    assert_eq!(lines.look(clock.now(), &mut Vec::new()).stop, InputLevel::Absent);
+    assert_eq!(lines.look(clock.now(), false, &mut Vec::new()).stop, InputLevel::Absent);
     until(&mut lines, clock, is_inactive);
     let put = |text: &str| {
         let next = folder.path().join("next");
