@@ -15,6 +15,7 @@ mod ingest;
 mod latency;
 mod lateness;
 mod process;
+mod reactions;
 mod samples;
 mod stop;
 mod table;
@@ -72,6 +73,7 @@ fn main() {
             "ingest" => runtime.block_on(ingest::measure(effort)),
             "lateness" => runtime.block_on(lateness::measure(effort, &mut known)),
             "stop" => runtime.block_on(stop::measure(effort, &known)),
+            "reactions" => runtime.block_on(reactions::measure(effort)),
             "process" => runtime.block_on(process::measure(effort)),
             "browser" => runtime.block_on(browser::measure(effort)),
             other => unreachable!("{other} is in FIGURES alone"),
@@ -120,4 +122,5 @@ fn say(text: &str) {
     let _ = writeln!(std::io::stdout().lock(), "{text}");
 }
 
-const FIGURES: &[&str] = &["engine", "latency", "ingest", "lateness", "stop", "process", "browser"];
+const FIGURES: &[&str] =
+    &["engine", "latency", "ingest", "lateness", "stop", "reactions", "process", "browser"];
