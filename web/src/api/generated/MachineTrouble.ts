@@ -3,4 +3,4 @@
 /**
  * What keeps a machine from being driven.
  */
-export type MachineTrouble = "no_port" | "no_answer" | "unknown_firmware" | "not_configured" | "restarted" | "emergency_stop" | "driver_fault" | "too_hot" | "bad_supply";
+export type MachineTrouble = "no_port" | "no_answer" | "unknown_firmware" | "not_configured" | "switch_off_and_on" | "restarted" | "emergency_stop" | "driver_fault" | "too_hot" | "bad_supply";
