@@ -270,7 +270,7 @@ impl Driver {
             };
             match axis.sequence.step(&axis.plan, seen) {
                 HomingStep::Move(speed_mps) => {
-                    let speed = self.follower.axis_speed(i, speed_mps, KEEPING_SECS);
+                    let speed = self.follower.axis_speed(i, speed_mps, 0.0, KEEPING_SECS);
                     speeds[i] = AxisSpeed { acceleration_mps2: RAMP_MPS2, ..speed };
                 }
                 HomingStep::Brake => {}
@@ -293,7 +293,7 @@ impl Driver {
 
     fn brake(&self, axis: usize) -> AxisSpeed {
         let limits = [self.settings.limits.x, self.settings.limits.y][axis];
-        let speed = self.follower.axis_speed(axis, 0.0, 0.0);
+        let speed = self.follower.axis_speed(axis, 0.0, 0.0, 0.0);
         AxisSpeed { acceleration_mps2: limits.braking_mps2, ..speed }
     }
 

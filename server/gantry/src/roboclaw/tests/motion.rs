@@ -25,6 +25,7 @@ fn it_finds_the_room_on_every_kind_of_boards() {
 struct Off {
     greatest_m: f64,
     greatest_mps: f64,
+    greatest_amps: f64,
     last_m: f64,
 }
 
@@ -68,6 +69,8 @@ fn drive(bench: &mut Bench) -> Off {
         bench.cycle(setpoint(from + both * s, both * v, both * a)).unwrap();
         let report = bench.session.report();
         let since = (report.answered_at - begun).secs() - t;
+        let [x, y] = report.current_amps;
+        off.greatest_amps = off.greatest_amps.max(x).max(y);
         off.greatest_mps = off.greatest_mps.max((report.velocity - both * (v + a * since)).norm());
         let (true_place, _) = bench.truth();
         let since = (bench.port.time() - begun).secs() - t;
@@ -86,16 +89,17 @@ const RAMP_SECS: f64 = 2.5 / 80.0;
 fn it_follows_a_course_at_its_limits_on_every_kind_of_boards() {
     for kind in KINDS {
         let mut bench = Bench::homed(kind);
-        let Off { greatest_m, greatest_mps, last_m } = drive(&mut bench);
+        let Off { greatest_m, greatest_mps, greatest_amps, last_m } = drive(&mut bench);
         let what = format!("{} {:?} {} baud", kind.firmware, kind.boards, kind.baud);
         println!(
-            "{what}: {:.1} mm and {greatest_mps:.3} m/s on the way, {:.2} mm at the end",
+            "{what}: {:.1} mm and {greatest_mps:.3} m/s on the way, {greatest_amps:.1} A, {:.2} mm at the end",
             greatest_m * 1e3,
             last_m * 1e3
         );
         assert!(greatest_m < 0.02, "{what}: {greatest_m} m on the way");
         assert!(greatest_mps < 0.1, "{what}: {greatest_mps} m/s on the way");
         assert!(last_m < 0.003, "{what}: {last_m} m at the end");
+        assert!(greatest_amps < 5.0, "{what}: {greatest_amps} A");
     }
 }
 
