@@ -67,7 +67,7 @@ describe("the keyboard", () => {
     await dashboard.page.keyboard.press("t");
     expect(await wears()).toEqual(["light", "en"]);
 
-    await dashboard.page.keyboard.press("4");
+    await dashboard.page.keyboard.press("5");
     // A browser changes the view a moment after the key: the next one is for the view that comes.
     await dashboard.page.getByTestId("config-people.v_h_mps").waitFor();
     await dashboard.page.keyboard.press("h");
