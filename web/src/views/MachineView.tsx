@@ -43,6 +43,7 @@ export function MachineView(props: { readonly live: Live }): JSX.Element {
 
 function Axes(props: { readonly column: Column; readonly shape: MachineShape | null }): JSX.Element {
   const say = () => words().machine.axes;
+  const name = (axis: 0 | 1): string => (axis === 0 ? say().names.x : say().names.y);
   const limits = (axis: 0 | 1): string => {
     const shape = props.shape;
     if (shape === null) return "";
@@ -55,32 +56,32 @@ function Axes(props: { readonly column: Column; readonly shape: MachineShape | n
   return (
     <section class="panel" aria-labelledby="axes-title">
       <h2 id="axes-title">{say().title}</h2>
-      <div class="scroll">
-        <table>
-          <thead>
-            <tr>
-              <For each={[say().axis, say().position, say().commanded, say().velocity, say().current, say().travel, say().limits]}>
-                {(title) => <th scope="col">{title}</th>}
-              </For>
-            </tr>
-          </thead>
-          <tbody>
-            <For each={[0, 1] as const}>
-              {(axis) => (
-                <tr data-testid={`machine-axis-${axis === 0 ? "x" : "y"}`}>
-                  <th scope="row">{axis === 0 ? say().names.x : say().names.y}</th>
-                  <td>{metres(props.column.position_m[axis])}</td>
-                  <td>{metres(props.column.commanded_m[axis])}</td>
-                  <td>{decimal(props.column.velocity_mps[axis], 2)} m/s</td>
-                  <td>{decimal(props.column.current_amps[axis], 2)} A</td>
-                  <td>{travel(axis)}</td>
-                  <td>{limits(axis)}</td>
-                </tr>
-              )}
+      <table>
+        <thead>
+          <tr>
+            <For each={[say().axis, say().position, say().commanded, say().velocity, say().current, say().travel]}>
+              {(title) => <th scope="col">{title}</th>}
             </For>
-          </tbody>
-        </table>
-      </div>
+          </tr>
+        </thead>
+        <tbody>
+          <For each={[0, 1] as const}>
+            {(axis) => (
+              <tr data-testid={`machine-axis-${axis === 0 ? "x" : "y"}`}>
+                <th scope="row">{name(axis)}</th>
+                <td>{metres(props.column.position_m[axis])} m</td>
+                <td>{metres(props.column.commanded_m[axis])} m</td>
+                <td>{decimal(props.column.velocity_mps[axis], 2)} m/s</td>
+                <td>{decimal(props.column.current_amps[axis], 2)} A</td>
+                <td>{travel(axis)}</td>
+              </tr>
+            )}
+          </For>
+        </tbody>
+      </table>
+      <dl class="facts">
+        <For each={[0, 1] as const}>{(axis) => <Fact name={`${say().limits}: ${name(axis)}`} value={limits(axis)} />}</For>
+      </dl>
       <p class="empty">{props.column.homed ? say().homed : say().notHomed}</p>
     </section>
   );
