@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, bail, ensure};
 use covr_engine::frames::Floor;
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::safety::separation::KeptFrom;
@@ -322,6 +322,7 @@ fn machine(config: &Config, clock: Clock) -> anyhow::Result<Box<dyn Gantry>> {
             Ok(Box::new(SimulatedMachine::new(parameters).context("the simulated machine")?))
         }
         MachineKind::RoboClaw => {
+            ensure!(config.machine.roboclaw.brake_measured, NOT_MEASURED);
             let settings = config.machine.roboclaw.settings(config);
             // Below the control thread, above everything else.
             let priority = config.control.real_time.then(|| config.control.priority.saturating_sub(1).max(1));
@@ -361,8 +362,23 @@ async fn active_scene(store: &Store, last: Option<(i64, i64)>) -> anyhow::Result
     ActiveScene::build(stored).map_err(|errors| anyhow::anyhow!("{errors:?}"))
 }
 
+const NOT_MEASURED: &str = "machine.roboclaw.brake_measured: found false; the separation rule stands on the braking of machine.x and machine.y, so measure it on \
+     this machine under its load, write what it showed there, and set this to true";
 const FIRST_SCENE: &str = include_str!("../../../deploy/scenes/demo.json");
 const LOOK_AT_TOKENS_EVERY: Duration = Duration::from_secs(1);
 const SECS_AN_HOUR: f64 = 3_600.0;
 const AT_REST_MPS: f64 = 0.01;
 const LONGEST_CLOSE: Duration = Duration::from_secs(3);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_machine_whose_brake_nobody_measured_is_not_driven() {
+        let mut config = Config::default();
+        config.machine.kind = MachineKind::RoboClaw;
+        let refused = machine(&config, Clock::started_now()).err().unwrap();
+        assert!(refused.to_string().contains("machine.roboclaw.brake_measured"), "{refused}");
+    }
+}

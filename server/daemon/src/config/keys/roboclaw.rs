@@ -9,6 +9,11 @@ use crate::config::Config;
 pub fn keys() -> Vec<Key> {
     vec![
         Key::new(
+            "machine.roboclaw.brake_measured",
+            "Whether the limits of machine.x and machine.y, the braking above all, were measured on this machine under its load. Without that the server does not start on it.",
+            Place::Switch(|c| &mut c.machine.roboclaw.brake_measured),
+        ),
+        Key::new(
             "machine.roboclaw.port",
             "For machine.kind \"roboclaw\": the serial port, best by a udev rule's name, so that it is the same after unplugging.",
             Place::Path(|c| &mut c.machine.roboclaw.port),
