@@ -88,7 +88,7 @@ pub enum Trouble {
     NotConfigured,
     /// Settings of its controller come into force when its power is switched off and on.
     SwitchOffAndOn,
-    /// Its controller has restarted, and forgotten its settings.
+    /// Its controller has restarted, or its counts jumped: the place is lost.
     Restarted,
     /// The wired emergency stop is active at the controller.
     EmergencyStop,

@@ -51,6 +51,8 @@ pub struct Driver {
     switches_m: Option<[f64; 2]>,
     was_told_to_home: bool,
     kept_m: Option<[f64; 2]>,
+    /// The counts went on as no machine can move.
+    is_lost: bool,
     drive: DriveState,
     status: Status,
     seen_at: Time,
@@ -95,6 +97,7 @@ impl Driver {
             switches_m: None,
             was_told_to_home: false,
             kept_m: None,
+            is_lost: false,
             drive: DriveState::Released,
             status: Status::default(),
             seen_at: Time::ZERO,
@@ -103,25 +106,30 @@ impl Driver {
         }
     }
 
-    /// Take in what the boards say; whether the counts went on as a machine can move. Where they did not the place is lost.
-    pub fn see(&mut self, look: &Look, at: Time) -> bool {
+    /// Take in what the boards say. Where the counts did not go on as a machine can move, the place is lost: the board has restarted,
+    /// perhaps with other settings, so it brakes and moves no more until it was configured anew.
+    pub fn see(&mut self, look: &Look, at: Time) {
         self.since_last_secs = if self.seen_at == Time::ZERO { 0.0 } else { (at - self.seen_at).secs() };
         let before = self.report().position;
         let limits = [self.settings.limits.x.speed_mps, self.settings.limits.y.speed_mps];
-        let mut is_continuous = true;
+        let homes_by_switches = self.homing == Homing::Running && self.settings.home_by == HomeBy::Switches;
+        let mut is_lost = false;
         for (i, axis) in self.axes.iter_mut().enumerate() {
             let most_m = SPARE_M + MOST_OVER * limits[i] * self.since_last_secs;
-            is_continuous &= axis.see(look, i, most_m);
+            let is_continuous = axis.see(look, i, most_m);
+            // A board may set its count to nothing at the home switch, while it homes: that is no loss.
+            is_lost |= !is_continuous && !(homes_by_switches && look.status.at_switch[i]);
         }
-        // A board may set its count to nothing at the home switch: while homing, by switches, that is no loss.
-        let expected = self.homing == Homing::Running && self.settings.home_by == HomeBy::Switches;
-        let is_lost = !is_continuous && !expected;
         if is_lost {
             self.lose_place(before);
         }
         self.status = look.status;
         self.seen_at = at;
-        !is_lost
+    }
+
+    /// The place is lost, and nothing holds the column any more.
+    pub fn is_over(&self) -> bool {
+        self.is_lost && self.drive == DriveState::Released
     }
 
     /// What to tell the boards at `now`, with the next look a `period` later.
@@ -131,7 +139,7 @@ impl Driver {
             Action::Track(setpoint) if age > setpoint.valid_for || self.homing != Homing::Homed => {
                 Action::Hold
             }
-            Action::Home if age > OLDEST_HOME => Action::Hold,
+            Action::Home if age > OLDEST_HOME || self.is_lost => Action::Hold,
             action => action,
         };
         if action != Action::Home {
@@ -212,12 +220,14 @@ impl Driver {
             (driver_fault, Trouble::DriverFault),
             (too_hot, Trouble::TooHot),
             (bad_supply, Trouble::BadSupply),
+            (self.is_lost, Trouble::Restarted),
         ]
         .into_iter()
         .find_map(|(is_so, trouble)| is_so.then_some(trouble))
     }
 
     fn lose_place(&mut self, stood_at: Floor) {
+        self.is_lost = true;
         self.stood_at = stood_at;
         self.homing = Homing::NotHomed;
         self.switches_m = None;
@@ -270,8 +280,8 @@ impl Driver {
             };
             match axis.sequence.step(&axis.plan, seen) {
                 HomingStep::Move(speed_mps) => {
-                    let speed = self.follower.axis_speed(i, speed_mps, 0.0, KEEPING_SECS);
-                    speeds[i] = AxisSpeed { acceleration_mps2: RAMP_MPS2, ..speed };
+                    let distance_m = speed_mps.abs() * KEEPING_SECS;
+                    speeds[i] = AxisSpeed { speed_mps, acceleration_mps2: RAMP_MPS2, distance_m };
                 }
                 HomingStep::Brake => {}
                 HomingStep::Rest { at_m } => speeds[i] = self.keep(i, at_m),
@@ -293,8 +303,7 @@ impl Driver {
 
     fn brake(&self, axis: usize) -> AxisSpeed {
         let limits = [self.settings.limits.x, self.settings.limits.y][axis];
-        let speed = self.follower.axis_speed(axis, 0.0, 0.0, 0.0);
-        AxisSpeed { acceleration_mps2: limits.braking_mps2, ..speed }
+        AxisSpeed { speed_mps: 0.0, acceleration_mps2: limits.braking_mps2, distance_m: 0.0 }
     }
 
     fn keep(&mut self, axis: usize, place_m: f64) -> AxisSpeed {

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use arc_swap::ArcSwap;
 use covr_engine::machine::{MachineReport, Trouble};
+use covr_engine::safety::vetted::Action;
 use covr_engine::time::Time;
 
 use super::board::Refused;
@@ -58,7 +59,7 @@ enum Ended {
     Refused(#[from] Refused),
     #[error("no good answer for {} ms; the last: {last}", .after.as_millis())]
     Silent { after: Duration, last: Lost },
-    #[error("a board has restarted: it has forgotten its settings")]
+    #[error("a board has restarted, or its counts jumped: it is configured anew")]
     Restarted,
 }
 
@@ -95,6 +96,9 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
                     figures.cycle(begun, good_at, boards.tally());
                     self.publish(boards.report(), taken.then_some(order.vetted_at), figures);
                     self.say_begun();
+                    if boards.is_over() {
+                        return Err(Ended::Restarted);
+                    }
                 }
                 Err(Refused::Lost(last @ Lost::Port(_))) => {
                     return Err(Ended::Silent { after: good_at.elapsed(), last });
@@ -190,8 +194,7 @@ const RETRY: Duration = Duration::from_millis(250);
 const LONGEST_SILENCE: Duration = Duration::from_millis(500);
 /// One slow thing after so many cycles.
 const SLOW_EVERY: u64 = 10;
-/// The age from which on orders count from the start: before the first there is none.
-pub const NO_ORDER: Order =
-    Order { vetted_at: Time::ZERO, action: covr_engine::safety::vetted::Action::Release };
+/// What holds before the control thread's first order.
+pub const NO_ORDER: Order = Order { vetted_at: Time::ZERO, action: Action::Release };
 /// For whoever starts the machine: how long the first try may take.
 pub const LONGEST_START: Duration = Duration::from_secs(3);

@@ -39,7 +39,11 @@ impl<P: Port> Session<P> {
         // Nothing is told to boards that were never looked at.
         if self.driver.report().answered_at != Time::ZERO {
             let tell = self.driver.next(clock(), order, self.period);
-            self.limit_current()?;
+            let gently = self.driver.pushes_gently();
+            // A lower limit comes before the motion that it is for, a higher one after whatever ended that: nothing delays a brake.
+            if gently {
+                self.limit_current(gently)?;
+            }
             let told = match tell {
                 Tell::Release => self.board.release(),
                 Tell::Brake(braking) => self.board.brake(braking),
@@ -51,6 +55,7 @@ impl<P: Port> Session<P> {
                 Err(_) => {}
                 Ok(()) => is_acknowledged = true,
             }
+            self.limit_current(gently)?;
         }
         let asked_at = clock();
         let look = self.board.look()?;
@@ -75,8 +80,12 @@ impl<P: Port> Session<P> {
         self.board.tally()
     }
 
-    fn limit_current(&mut self) -> Result<(), Refused> {
-        let gently = self.driver.pushes_gently();
+    /// Its place is lost and it is let go: it is to be found and configured anew.
+    pub fn is_over(&self) -> bool {
+        self.driver.is_over()
+    }
+
+    fn limit_current(&mut self, gently: bool) -> Result<(), Refused> {
         if gently != self.pushes_gently {
             let [homing, usual] = self.limits_amps;
             self.board.limit_current(if gently { homing } else { usual })?;

@@ -28,6 +28,8 @@ struct World {
     emulator: Emulator,
     now: Time,
     begun: Instant,
+    /// The numbers of the commands that went out.
+    sent: Vec<u8>,
 }
 
 /// The line to them; waiting is what makes time pass.
@@ -54,7 +56,10 @@ impl Port for VirtualPort {
     }
 
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.with(|world| world.emulator.receive(world.now, bytes));
+        self.with(|world| {
+            world.sent.push(bytes[1]);
+            world.emulator.receive(world.now, bytes);
+        });
         Ok(())
     }
 
@@ -141,6 +146,7 @@ impl Bench {
             emulator: Emulator::new(setup).unwrap(),
             now: Time::from_micros(1_000),
             begun: Instant::now(),
+            sent: Vec::new(),
         };
         let port = VirtualPort(Arc::new(Mutex::new(world)));
         // A board takes a moment to start.

@@ -21,7 +21,7 @@ pub enum MachineTrouble {
     NotConfigured,
     /// Settings of its controller come into force when its power is switched off and on.
     SwitchOffAndOn,
-    /// Its controller has restarted, and forgotten its settings.
+    /// Its controller has restarted, or its counts jumped: the place is lost.
     Restarted,
     /// The wired emergency stop is active at the controller.
     EmergencyStop,
@@ -61,7 +61,7 @@ impl fmt::Display for MachineTrouble {
             Self::SwitchOffAndOn => {
                 "settings of the motor controller come into force when its power is switched off and on"
             }
-            Self::Restarted => "the motor controller has restarted and forgotten its settings",
+            Self::Restarted => "the motor controller has restarted, or its counts jumped: the place is lost",
             Self::EmergencyStop => "the wired emergency stop is active",
             Self::DriverFault => "a bridge of the motor controller is broken",
             Self::TooHot => "the motor controller is too hot",

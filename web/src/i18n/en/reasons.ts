@@ -9,7 +9,7 @@ export const troubles: Record<MachineTrouble, string> = {
   unknown_firmware: "the motor controller has a firmware that is not known here",
   not_configured: "the motor controller does not keep a setting",
   switch_off_and_on: "settings of the motor controller come into force when its power is switched off and on",
-  restarted: "the motor controller has restarted and forgotten its settings",
+  restarted: "the motor controller has restarted, or its counts jumped: the place is lost",
   emergency_stop: "the wired emergency stop is active",
   driver_fault: "a bridge of the motor controller is broken",
   too_hot: "the motor controller is too hot",

@@ -9,7 +9,7 @@ export const troubles: Record<MachineTrouble, string> = {
   unknown_firmware: "le micrologiciel du contrôleur de moteurs n’est pas connu ici",
   not_configured: "le contrôleur de moteurs ne garde pas un réglage",
   switch_off_and_on: "des réglages du contrôleur de moteurs prennent effet quand son alimentation est coupée puis remise",
-  restarted: "le contrôleur de moteurs a redémarré et oublié ses réglages",
+  restarted: "le contrôleur de moteurs a redémarré, ou ses comptes ont sauté : la position est perdue",
   emergency_stop: "l’arrêt d’urgence câblé est actif",
   driver_fault: "un pont du contrôleur de moteurs est défectueux",
   too_hot: "le contrôleur de moteurs est trop chaud",

@@ -80,17 +80,17 @@ impl Bench {
         Look { counts, speeds, amps: self.amps, status: Status { at_switch, ..self.status } }
     }
 
-    fn see(&mut self) -> bool {
+    fn see(&mut self) {
         let look = self.look();
-        self.driver.see(&look, self.now)
+        self.driver.see(&look, self.now);
     }
 
     /// One period under this action, told now.
-    fn step(&mut self, action: Action) -> bool {
-        self.step_with(Order { vetted_at: self.now, action })
+    fn step(&mut self, action: Action) {
+        self.step_with(Order { vetted_at: self.now, action });
     }
 
-    fn step_with(&mut self, order: Order) -> bool {
+    fn step_with(&mut self, order: Order) {
         let tell = self.driver.next(self.now, &order, PERIOD);
         self.told = Some(tell);
         let counts = match tell {
@@ -104,7 +104,7 @@ impl Bench {
             self.place_m[i] = next;
         }
         self.now += PERIOD;
-        self.see()
+        self.see();
     }
 
     fn home(&mut self) -> Homing {
@@ -151,10 +151,19 @@ proptest! {
         prop_assert_eq!(bench.home(), Homing::Homed);
         let before = bench.driver.report().position;
         bench.power_on_m[0] += f64::from(jump) / COUNTS[0];
-        prop_assert!(!bench.step(track(before.x, before.y)));
+        bench.step(track(before.x, before.y));
         let report = bench.driver.report();
         prop_assert_eq!(report.homing, Homing::NotHomed);
+        prop_assert_eq!(report.trouble, Some(Trouble::Restarted));
         prop_assert!(report.position.distance_m(before) < 0.005);
+        // Nothing moves it any more; let go, it is to be configured anew.
+        for action in [Action::Home, track(1.0, 1.0)] {
+            bench.step(action);
+            prop_assert!(matches!(bench.told, Some(Tell::Brake(_))), "{:?}", bench.told);
+        }
+        prop_assert!(!bench.driver.is_over());
+        bench.step(Action::Release);
+        prop_assert!(bench.driver.is_over());
     }
 }
 
@@ -163,7 +172,8 @@ fn a_setpoint_is_reached_and_kept() {
     let mut bench = Bench::new(settings(HomeBy::Switches, false), [0.5, 0.5]);
     assert_eq!(bench.home(), Homing::Homed);
     for _ in 0..500 {
-        assert!(bench.step(track(0.5, 0.3)));
+        bench.step(track(0.5, 0.3));
+        assert_eq!(bench.driver.report().trouble, None);
     }
     assert!(bench.driver.report().position.distance_m(Floor::new(0.5, 0.3)) < 1e-3);
     assert!(matches!(bench.told, Some(Tell::Brake(_))), "at rest it is told to rest: {:?}", bench.told);

@@ -3,6 +3,7 @@
 use covr_engine::machine::Trouble;
 
 use super::*;
+use crate::roboclaw::packet::Command;
 
 /// Cycle under a setpoint that stays, for so long; how many cycles were lost.
 fn stand(bench: &mut Bench, secs: f64) -> (u32, u32) {
@@ -97,7 +98,7 @@ fn a_board_whose_switches_were_not_set_up_is_driven_only_after_it_was_off() {
     let machine = MachineParameters::paper(travel());
     let setup = Setup { baud: 460_800, firmware: "4.1.34".parse().unwrap(), ..Setup::paper(machine) };
     let emulator = Emulator::new(setup).unwrap();
-    let world = World { emulator, now: Time::from_micros(1_000), begun: Instant::now() };
+    let world = World { emulator, now: Time::from_micros(1_000), begun: Instant::now(), sent: Vec::new() };
     let port = VirtualPort(Arc::new(Mutex::new(world)));
     port.with(|world| world.emulator.poll(world.now));
     port.wait(Span::from_secs(2.0));
@@ -105,4 +106,40 @@ fn a_board_whose_switches_were_not_set_up_is_driven_only_after_it_was_off() {
     Bench::switch_off_and_on(&port);
     let mut bench = Bench::try_new(USUAL, &port).unwrap();
     assert_eq!(bench.home(), Homing::Homed);
+}
+
+#[test]
+fn a_stop_while_it_homes_goes_out_before_anything_else() {
+    let mut bench = Bench::new(USUAL, Floor::new(2.0, 2.0));
+    for _ in 0..100 {
+        bench.cycle(Action::Home).unwrap();
+    }
+    for (action, command) in [(Action::Hold, Command::SpeedAccelBoth), (Action::Release, Command::DutyBoth)] {
+        bench.port.with(|world| world.sent.clear());
+        bench.cycle(action).unwrap();
+        assert_eq!(bench.port.with(|world| world.sent[0]), command as u8, "{action:?}");
+        for _ in 0..100 {
+            bench.cycle(Action::Home).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_board_that_restarts_while_it_homes_has_lost_its_place() {
+    for firmware in ["older", "newer"] {
+        let mut bench = Bench::new(Kind { firmware, ..USUAL }, Floor::new(0.4, 0.3));
+        while bench.session.report().position.x > 0.9 {
+            bench.cycle(Action::Home).unwrap();
+        }
+        let before = bench.session.report().position;
+        bench.give("brown-out 50");
+        for _ in 0..300 {
+            // What is lost while it is dark is what the link thread opens the port anew for.
+            let _ = bench.cycle(Action::Home);
+        }
+        let report = bench.session.report();
+        assert_eq!(report.homing, Homing::NotHomed, "{firmware}: it went on homing from {before:?}");
+        assert_eq!(report.trouble, Some(Trouble::Restarted), "{firmware}");
+        assert!(bench.truth().1.norm() < 0.005, "{firmware}: it moves");
+    }
 }
