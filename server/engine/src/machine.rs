@@ -100,38 +100,6 @@ pub enum Trouble {
     BadSupply,
 }
 
-impl Trouble {
-    /// All of them.
-    pub const ALL: [Self; 10] = [
-        Self::NoPort,
-        Self::NoAnswer,
-        Self::UnknownFirmware,
-        Self::NotConfigured,
-        Self::SwitchOffAndOn,
-        Self::Restarted,
-        Self::EmergencyStop,
-        Self::DriverFault,
-        Self::TooHot,
-        Self::BadSupply,
-    ];
-
-    /// The name on every surface.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::NoPort => "no_port",
-            Self::NoAnswer => "no_answer",
-            Self::UnknownFirmware => "unknown_firmware",
-            Self::NotConfigured => "not_configured",
-            Self::SwitchOffAndOn => "switch_off_and_on",
-            Self::Restarted => "restarted",
-            Self::EmergencyStop => "emergency_stop",
-            Self::DriverFault => "driver_fault",
-            Self::TooHot => "too_hot",
-            Self::BadSupply => "bad_supply",
-        }
-    }
-}
-
 impl AxisLimits {
     /// The paper's machine: over 1.1 m/s on long moves, and 0.5 m/s on average under 0.8 m, from which 1.25 m/s2 follows.
     pub const PAPER: Self =

@@ -10,6 +10,7 @@ mod shown;
 use super::*;
 use crate::frames::{Floor, Planar, Point, Pose};
 use crate::intention::IntentionParameters;
+use crate::machine::Homing;
 use crate::mode::RequestKind;
 use crate::motion::MotionName;
 use crate::observation::PoseSample;

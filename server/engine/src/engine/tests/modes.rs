@@ -1,7 +1,7 @@
 //! The engine does what the table of modes says: every mode times every request and every trigger, by acts and faults.
 
 use super::*;
-use crate::mode::{Response, react, respond};
+use crate::mode::{Response, Trigger, react, respond};
 
 /// A room in this mode, with a tracked visitor where the mode allows one.
 fn room_in(mode: Mode) -> Room {
