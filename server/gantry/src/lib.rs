@@ -10,6 +10,7 @@
 //! - [`ideal`]: a machine that does exactly what it is told, for sweeps over rules rather than machines.
 
 pub mod contract;
+mod deviation;
 pub mod homing;
 pub mod ideal;
 pub mod roboclaw;

@@ -48,7 +48,7 @@ pub fn snapshot() -> Snapshot {
 pub fn machine_health() -> MachineHealth {
     MachineHealth {
         firmware: Some("USB Roboclaw 2x30a v4.1.34".into()),
-        profile: Some("4.1".into()),
+        profile: Some("4.1.29–4.3".into()),
         trouble: None,
         condition: String::new(),
         supply_volts: Some(24.1),

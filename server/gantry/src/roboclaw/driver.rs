@@ -118,7 +118,8 @@ impl Driver {
             let most_m = SPARE_M + MOST_OVER * limits[i] * self.since_last_secs;
             let is_continuous = axis.see(look, i, most_m);
             // A board may set its count to nothing at the home switch, while it homes: that is no loss.
-            is_lost |= !is_continuous && !(homes_by_switches && look.status.at_switch[i]);
+            let is_expected = homes_by_switches && look.status.at_switch[i];
+            is_lost |= !(is_continuous || is_expected);
         }
         if is_lost {
             self.lose_place(before);

@@ -43,11 +43,11 @@ impl Firmware {
         }
     }
 
-    /// The name on every surface.
+    /// The name on every surface, in any language.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Older => "4.1 before 4.1.29",
-            Self::Newer => "4.1.29 to 4.3",
+            Self::Older => "< 4.1.29",
+            Self::Newer => "4.1.29–4.3",
         }
     }
 

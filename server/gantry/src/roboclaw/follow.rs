@@ -5,6 +5,7 @@ use covr_engine::machine::{Limits, MachineReport};
 use covr_engine::safety::vetted::Setpoint;
 use covr_engine::time::{Span, Time};
 
+use crate::deviation::{Deviation, deviations};
 use crate::settle::Settler;
 
 /// What one axis is to do until the next look.
@@ -46,26 +47,18 @@ impl Follower {
         period: Span,
     ) -> [AxisSpeed; 2] {
         let valid_secs = setpoint.valid_for.secs().max(0.0);
-        let since_vetted = (now - vetted_at).secs().clamp(0.0, valid_secs);
-        let since_report = (now - report.answered_at).secs().clamp(0.0, valid_secs);
-        // The speed that is right in the middle of the time that it will be kept.
-        let ahead = (since_vetted + 0.5 * period.secs()).min(valid_secs);
-        let axes = [
-            (setpoint.position.x, setpoint.velocity.x, setpoint.acceleration.x),
-            (setpoint.position.y, setpoint.velocity.y, setpoint.acceleration.y),
-        ];
-        let measured = [(report.position.x, report.velocity.x), (report.position.y, report.velocity.y)];
+        let deviations = deviations(now, vetted_at, setpoint, report);
         [0, 1].map(|i| {
-            let (position, velocity, acceleration) = axes[i];
-            let (measured_m, measured_mps) = measured[i];
-            let reference_m = position + (velocity + 0.5 * acceleration * since_vetted) * since_vetted;
-            let error_m = reference_m - (measured_m + measured_mps * since_report);
-            let speed_mps = if self.settlers[i].is_settled(velocity, measured_mps, error_m) {
+            let Deviation { velocity_mps, acceleration_mps2, measured_mps, error_m, since_vetted_secs } =
+                deviations[i];
+            let speed_mps = if self.settlers[i].is_settled(velocity_mps, measured_mps, error_m) {
                 0.0
             } else {
+                // The speed that is right in the middle of the time that it will be kept.
+                let ahead_secs = (since_vetted_secs + 0.5 * period.secs()).min(valid_secs) + LAG_SECS;
                 let correction = (self.gain_per_s * error_m).clamp(-CORRECTION_MPS, CORRECTION_MPS);
                 let most = OVERSPEED * self.axis(i).speed_mps;
-                (velocity + acceleration * (ahead + LAG_SECS) + correction).clamp(-most, most)
+                (velocity_mps + acceleration_mps2 * ahead_secs + correction).clamp(-most, most)
             };
             self.axis_speed(i, speed_mps, measured_mps, valid_secs)
         })
@@ -84,7 +77,7 @@ impl Follower {
 
     /// A speed of one axis that is good for so long. The ramp to it is that of speeding up or of slowing, whichever it is: friction
     /// helps the one and adds to the other, and a ramp as steep as a brake would take more current than R5 allows.
-    pub fn axis_speed(&self, axis: usize, speed_mps: f64, measured_mps: f64, valid_secs: f64) -> AxisSpeed {
+    fn axis_speed(&self, axis: usize, speed_mps: f64, measured_mps: f64, valid_secs: f64) -> AxisSpeed {
         let limits = self.axis(axis);
         let slows = speed_mps * measured_mps >= 0.0 && speed_mps.abs() < measured_mps.abs();
         let ramp_mps2 = if slows { limits.braking_mps2 } else { STEEPER * limits.acceleration_mps2 };

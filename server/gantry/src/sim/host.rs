@@ -10,6 +10,7 @@ use covr_engine::time::Time;
 use super::axis::{SpeedCourse, TICK_MICROS};
 use super::controller::Packet;
 use super::parameters::MachineParameters;
+use crate::deviation::{Deviation, deviations};
 use crate::settle::Settler;
 
 /// The position loops of both axes.
@@ -42,27 +43,18 @@ impl Host {
         setpoint: &Setpoint,
         report: &MachineReport,
     ) -> Packet {
-        let valid_secs = setpoint.valid_for.secs().max(0.0);
-        let since_vetted = (now - vetted_at).secs().clamp(0.0, valid_secs);
-        let since_report = (now - report.answered_at).secs().clamp(0.0, valid_secs);
-        let axes = [
-            (setpoint.position.x, setpoint.velocity.x, setpoint.acceleration.x),
-            (setpoint.position.y, setpoint.velocity.y, setpoint.acceleration.y),
-        ];
-        let measured = [(report.position.x, report.velocity.x), (report.position.y, report.velocity.y)];
+        let deviations = deviations(now, vetted_at, setpoint, report);
         let courses = [0, 1].map(|i| {
-            let (position, velocity, acceleration) = axes[i];
-            let (measured_m, measured_mps) = measured[i];
-            let reference_m = position + (velocity + 0.5 * acceleration * since_vetted) * since_vetted;
-            let error_m = reference_m - (measured_m + measured_mps * since_report);
-            if self.settlers[i].is_settled(velocity, measured_mps, error_m) {
+            let Deviation { velocity_mps, acceleration_mps2, measured_mps, error_m, since_vetted_secs } =
+                deviations[i];
+            if self.settlers[i].is_settled(velocity_mps, measured_mps, error_m) {
                 return SpeedCourse { target_mps: 0.0, slope_mps2: 0.0, most_mps2: f64::INFINITY };
             }
             let correction = (self.position_gain_per_s * error_m).clamp(-CORRECTION_MPS, CORRECTION_MPS);
-            let asked = velocity + acceleration * since_vetted + correction;
+            let asked = velocity_mps + acceleration_mps2 * since_vetted_secs + correction;
             SpeedCourse {
                 target_mps: asked.clamp(-self.most_mps[i], self.most_mps[i]),
-                slope_mps2: acceleration,
+                slope_mps2: acceleration_mps2,
                 most_mps2: f64::INFINITY,
             }
         });
