@@ -42,5 +42,4 @@ export const machine = {
     nothing: "none",
     means: "A cycle is a command and a look. R8 stops the machine after 100 ms without a good answer; the controller stops by itself when it hears nothing.",
   },
-  config: { title: "Configuration of the machine", all: "Every key of the machine, under Settings" },
 };

@@ -24,7 +24,7 @@ export const machine = {
     fine: "Il peut être piloté.",
     firmware: "Micrologiciel",
     profile: "Piloté comme",
-    profileIs: (name: string) => `micrologiciel ${name.replace(" and ", " et ")}`,
+    profileIs: (name: string) => `micrologiciel ${name}`,
     supply: "Alimentation",
     temperature: "Température",
     unknown: "pas encore connue",
@@ -42,5 +42,4 @@ export const machine = {
     nothing: "aucune",
     means: "Un cycle est une commande et une lecture. R8 arrête la machine après 100 ms sans réponse valable ; le contrôleur s’arrête de lui-même quand il n’entend rien.",
   },
-  config: { title: "Configuration de la machine", all: "Chaque clé de la machine, dans les réglages" },
 };
