@@ -5,8 +5,8 @@
 //! moved within what the certificate allowed for.
 
 use crate::frames::{Floor, Planar};
-use crate::machine::{AxisLimits, Limits};
-use crate::safety::path::{AxisPath, AxisState, BrakePath, State};
+use crate::machine::Limits;
+use crate::safety::path::{AxisPath, BrakePath, State};
 use crate::safety::separation::{Conflict, Separation};
 use crate::safety::vetted::{Action, Setpoint, Vetted};
 use crate::time::{Span, Time};
@@ -36,18 +36,8 @@ impl Governor {
     /// For so long nothing was commanded: the machine went on at the acceleration that it was told last, no faster than
     /// it may and not past rest. That is within what was certified, as long as it is no longer than one reaction.
     pub fn carry_on(&mut self, unwatched: Span, limits: &Limits) {
-        let on = |axis: AxisState, own: &AxisLimits| {
-            let slows = axis.v * axis.a < 0.0;
-            let rests_after = if slows { -axis.v / axis.a } else { f64::INFINITY };
-            let t = unwatched.secs().min(rests_after);
-            let v = (axis.v + axis.a * t).clamp(-own.speed_mps, own.speed_mps);
-            // An acceleration that could not be ramped out before top speed or rest has ended by itself.
-            let ramped_out = v + axis.a * axis.a.abs() / (2.0 * own.jerk_mps3);
-            let goes_on = ramped_out.abs() <= own.speed_mps && ramped_out * v > 0.0;
-            AxisState { p: axis.p + 0.5 * (axis.v + v) * t, v, a: if goes_on { axis.a } else { 0.0 } }
-        };
-        let State { x, y } = self.commanded;
-        self.commanded = State { x: on(x, &limits.x), y: on(y, &limits.y) };
+        let (State { x, y }, secs) = (self.commanded, unwatched.secs());
+        self.commanded = State { x: x.carried_on(secs, &limits.x), y: y.carried_on(secs, &limits.y) };
     }
 
     /// Move on by one period with the first allowed of `proposals` (velocities, best first), else brake.

@@ -57,9 +57,32 @@ impl AxisState {
             a: self.a + t * jerk,
         }
     }
+
+    /// Where the axis is when nothing is commanded for `secs`: on at its acceleration, no faster than it may and not past rest.
+    pub fn carried_on(self, secs: f64, limits: &AxisLimits) -> Self {
+        let slows = self.v * self.a < 0.0;
+        let rests_after = if slows { -self.v / self.a } else { f64::INFINITY };
+        let t = secs.min(rests_after);
+        let v = (self.v + self.a * t).clamp(-limits.speed_mps, limits.speed_mps);
+        // An acceleration that could not be ramped out before top speed or rest has ended by itself.
+        let ramped_out = v + self.a * self.a.abs() / (2.0 * limits.jerk_mps3);
+        let goes_on = ramped_out.abs() <= limits.speed_mps && ramped_out * v > 0.0;
+        Self { p: self.p + 0.5 * (self.v + v) * t, v, a: if goes_on { self.a } else { 0.0 } }
+    }
 }
 
 impl State {
+    /// The greatest speed before a brake bites that comes `reaction_secs` from now, m/s: on at its acceleration, which is then
+    /// ramped out.
+    pub fn speed_before_brake_mps(&self, limits: &Limits, reaction_secs: f64) -> f64 {
+        let fastest = |axis: AxisState, own: &AxisLimits| {
+            let AxisState { v, a, .. } = axis.carried_on(reaction_secs, own);
+            v + a * a.abs() / (2.0 * own.jerk_mps3)
+        };
+        let then = Planar::new(fastest(self.x, &limits.x), fastest(self.y, &limits.y));
+        self.velocity().norm().max(then.norm())
+    }
+
     /// At rest at a place.
     pub fn at_rest(place: Floor) -> Self {
         let axis = |p| AxisState { p, v: 0.0, a: 0.0 };

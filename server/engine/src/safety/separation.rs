@@ -101,7 +101,9 @@ impl Separation<'_> {
     pub fn certify(&self, state: &State) -> Result<(), Conflict> {
         let path = BrakePath::worst(state, self.limits, self.parameters.reaction.secs());
         self.certify_travel(state, &path)?;
-        let speed = state.velocity().norm() + MACHINE_OVERSHOOT_MPS;
+        // A control thread that stalls leaves the column to itself for a reaction.
+        let reaction_secs = self.parameters.reaction.secs();
+        let speed = state.speed_before_brake_mps(self.limits, reaction_secs) + MACHINE_OVERSHOOT_MPS;
         let allowance_m = self.parameters.following_allowance_m;
         self.certify_path(state, &path, speed, allowance_m)?;
         // The brake begun at once takes another curve, as its axes come to rest at other times; and so does the one
@@ -314,6 +316,29 @@ mod tests {
         assert!(verdict(Planar::new(0.0, 0.3), 0.65, |t| t.near_object = true).is_err(), "but not faster");
         assert!(verdict(creep, 1.0, |_| ()).is_ok());
         assert!(verdict(creep, 1.0, |t| t.low = true).is_err());
+    }
+
+    /// A control thread that stalls lets the column go on at its acceleration for a reaction: what is slow enough for the
+    /// near radius now is not then.
+    #[test]
+    fn near_an_object_a_column_that_would_be_too_fast_before_it_brakes_keeps_the_wide_radius() {
+        let near = |v: f64, a: f64| {
+            let mut state = State::moving(Floor::new(2.0, 2.0), Planar::new(0.0, v));
+            state.y.a = a;
+            let threat = Threat {
+                person: PersonId(1),
+                head: Floor::new(2.725, 2.0),
+                velocity: Planar::ZERO,
+                age_secs: 0.02,
+                near_object: true,
+                low: false,
+            };
+            certified(&state, &[threat])
+        };
+        assert!(near(0.2, 0.0).is_ok());
+        assert!(near(0.2, -1.25).is_ok());
+        assert!(near(0.2, 1.25).is_err(), "0.2 m/s and 50 ms of 1.25 m/s2 are 0.26 m/s");
+        assert!(near(0.1, 1.25).is_ok());
     }
 
     #[test]

@@ -32,7 +32,8 @@ fn the_column_says_what_it_is_about_and_who_holds_it() {
         assert!(person.limits_column);
         let terms = person.separation.unwrap();
         assert_eq!(terms.required_m(), person.required_m);
-        if snapshot.column.activity == Activity::Blocked {
+        // Blocked, it may still slide along the edge of what is allowed.
+        if room.report.velocity == Planar::ZERO {
             assert_eq!((terms.reaction_m, terms.braking_m, terms.walking_m), (0.0, 0.0, 0.0));
         }
         room.ask(RequestKind::Disarm);
