@@ -8,6 +8,7 @@ mod contract;
 mod dashboards;
 mod game_master;
 mod guards;
+mod jog;
 mod links;
 mod login;
 mod machine;

@@ -133,6 +133,7 @@ async fn every_message_of_a_dashboard_is_answered_to_the_roles_of_the_table_and_
             request,
             reason: Some("walked".into()),
         }))
+        .chain([FromDashboard::Jog { request_id: 3, to: None, speed_mps: 0.0 }])
         .collect();
     let keys: BTreeSet<_> = messages.iter().map(table::dashboard_key).collect();
     let of_dashboards: BTreeSet<_> = table::keys().filter(|key| key.starts_with("dashboard ")).collect();

@@ -87,6 +87,7 @@ export class MockMachine {
       this.event("request_accepted", `person ${request.confirm_origin} stands on the floor mark`);
       return { outcome: "accepted", detail: "Ada is confirmed on the floor mark", why: { id: "origin_confirmed", person: "Ada" } };
     }
+    if (request === "confirm_clear") return { outcome: "refused", detail: "Ada is in the arena", why: { id: "person_inside", person: "Ada" } };
     const refusal = this.#refusal(request);
     if (refusal !== null) {
       const [why, detail] = refusal;
@@ -168,7 +169,7 @@ export class MockMachine {
       mode: this.#mode,
       mode_since_micros: Math.round(this.#modeSinceSecs * 1e6),
       stop: this.#stop,
-      requests: (["home", "arm", "disarm", "stop", "reset"] as const).map((request) => ({
+      requests: (["home", "arm", "disarm", "stop", "reset", "jog"] as const).map((request) => ({
         request,
         refused_because: request === "stop" ? null : (this.#refusal(request)?.[1] ?? null),
         why: request === "stop" ? null : (this.#refusal(request)?.[0] ?? null),
@@ -204,6 +205,7 @@ export class MockMachine {
         arrival_secs: this.#mode === "following" ? best.arrival_secs : null,
         why: this.#mode === "following" ? [{ id: "serves", person: "Ada", object: best.id, weight: best.weight, probability: best.probability }] : [{ id: "drive_released" }],
         planned_path_m: target === null ? [] : this.#pathTo(target),
+        jog_speed_mps: this.#mode === "ready" ? 0.24 : null,
         current_amps: [0.8 + speed, 0.6 + speed],
         homed: this.#mode !== "faulted",
       },
@@ -255,7 +257,7 @@ export class MockMachine {
     this.event("mode_changed", `${from} to ${mode}`, { from, to: mode, because: "asked" });
   }
 
-  #refusal(request: "home" | "arm" | "disarm" | "reset"): Told | null {
+  #refusal(request: "home" | "arm" | "disarm" | "reset" | "jog"): Told | null {
     const latched = this.#mode === "latched_stop";
     const resetFirst: Told = [{ id: "reset_first" }, "the machine is stopped: reset first"];
     switch (request) {
@@ -269,6 +271,8 @@ export class MockMachine {
         return latched ? [{ id: "released_already" }, "the drive is released already; leave the stop by reset"] : null;
       case "reset":
         return latched || this.#mode === "faulted" ? null : [{ id: "nothing_to_reset" }, "nothing to reset"];
+      case "jog":
+        return this.#mode === "ready" ? null : latched ? resetFirst : [{ id: "disarm_first" }, "the machine is armed: disarm first"];
     }
   }
 

@@ -74,6 +74,11 @@ export class MockServer {
     send(client, this.#sceneMessage());
     client.on("message", (data: Buffer) => {
       const message = JSON.parse(data.toString()) as FromDashboard;
+      if (message.type === "jog") {
+        const why = message.to === null ? ({ id: "jog_let_go" } as const) : ({ id: "jogs_while_held" } as const);
+        send(client, { type: "answer", request_id: message.request_id, outcome: "accepted", detail: why.id, why, to_drive_micros: null });
+        return;
+      }
       const reason = message.reason ?? null;
       if (message.type === "stop") {
         const { toDriveMicros } = this.machine.stop(reason);
@@ -294,5 +299,5 @@ const UNASKED: Me = {
   name: null,
   role: null,
   csrf: null,
-  may: ["home", "arm", "disarm", "reset", "stop"].map((request) => `dashboard ${request}`),
+  may: ["home", "arm", "disarm", "reset", "stop", "jog"].map((request) => `dashboard ${request}`),
 };

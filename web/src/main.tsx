@@ -14,6 +14,7 @@ import "./style/records.css";
 import "./style/scenes.css";
 import "./style/sessions.css";
 import "./style/settings.css";
+import "./style/jog.css";
 
 const root = document.getElementById("root");
 if (root === null) throw new Error("the page has no root");

@@ -18,6 +18,7 @@ use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::config::{Config, Origins};
 use crate::control::{Control, NotDelivered, NotReached, StopLaneName};
+use crate::hand::{Hand, Ordered};
 use crate::http::Limits;
 use crate::meters;
 use crate::persons::Persons;
@@ -42,6 +43,8 @@ pub struct App {
     pub limits: Limits,
     /// The database.
     pub store: Store,
+    /// Whose hand jogs the column.
+    pub hand: Hand,
     /// The recorder.
     pub recorder: Recorder,
     /// What records sessions.
@@ -133,6 +136,21 @@ impl App {
         Ok(answer)
     }
 
+    /// Somebody looked: nobody is in the arena.
+    pub async fn confirm_clear(&self, asker: &Asker) -> Result<Answer, NotDelivered> {
+        let detail = json!({ "request": "confirm_clear" });
+        self.ask_recorded(asker, "confirm_clear", Request::ConfirmClear, detail).await
+    }
+
+    /// The answer to an order to jog. Who takes the column into their hand is recorded; the orders that follow are not.
+    pub async fn jogged(&self, asker: &Asker, ordered: Ordered) -> Result<Answer, NotDelivered> {
+        let answer = ordered.answer.await.map_err(|_| NotDelivered::NotRunning)?;
+        if ordered.taken {
+            self.record_answer(asker, "jog", &answer, json!({ "request": "jog" }));
+        }
+        Ok(answer)
+    }
+
     /// The reason of an answer, with what the clients call the persons.
     pub fn reason(&self, answer: &Answer) -> Reason {
         Reason::new(&answer.reason, &self.persons.names())
@@ -203,19 +221,23 @@ impl App {
         asker: &Asker,
         name: &str,
         request: Request,
-        mut detail: Value,
+        detail: Value,
     ) -> Result<Answer, NotDelivered> {
         let answer = self.control.ask(request).await?;
-        let why = self.reason(&answer);
+        self.record_answer(asker, name, &answer, detail);
+        if self.recorder.settled().await == Settled::Lost {
+            tracing::error!(request = name, "an accepted request could not be stored");
+        }
+        Ok(answer)
+    }
+
+    fn record_answer(&self, asker: &Asker, name: &str, answer: &Answer, mut detail: Value) {
+        let why = self.reason(answer);
         let kind = if answer.outcome == Outcome::Refused { "request_refused" } else { "request_accepted" };
         let outcome = if answer.outcome == Outcome::Refused { "refused" } else { "accepted" };
         detail["detail"] = why.to_string().into();
         detail["why"] = json!(why);
         self.recorder.record(kind, format!("{name} by {asker}: {outcome}: {why}"), asker.sign(detail));
-        if self.recorder.settled().await == Settled::Lost {
-            tracing::error!(request = name, "an accepted request could not be stored");
-        }
-        Ok(answer)
     }
 }
 

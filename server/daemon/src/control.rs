@@ -141,9 +141,14 @@ impl Control {
 
     /// Ask, and wait for the answer.
     pub async fn ask(&self, request: Request) -> Result<Answer, NotDelivered> {
+        self.put(request)?.await.map_err(|_| NotDelivered::NotRunning)
+    }
+
+    /// Put a request into the queue; its answer comes later. Requests put one after another are answered so.
+    pub fn put(&self, request: Request) -> Result<oneshot::Receiver<Answer>, NotDelivered> {
         let (reply, answer) = oneshot::channel();
         self.asks.try_send(Ask { request, reply }).map_err(not_delivered)?;
-        answer.await.map_err(|_| NotDelivered::NotRunning)
+        Ok(answer)
     }
 
     /// Pull a stop lane, and wait until the braking command is written to the drive: the time from

@@ -18,6 +18,7 @@ pub mod emulate;
 pub mod evaluate;
 pub mod explain;
 pub mod fit;
+pub mod hand;
 pub mod http;
 pub mod inputs;
 pub mod listen;

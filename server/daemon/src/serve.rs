@@ -29,6 +29,7 @@ use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::config::{Config, Loaded, MachineKind};
 use crate::control::{Control, Ended, Setup, StopLaneName, real_time};
+use crate::hand::Hand;
 use crate::http::Limits;
 use crate::inputs::InputLines;
 use crate::listen::{Listening, check_reach, check_tokens, listen, tls};
@@ -163,6 +164,7 @@ impl Server {
             control,
             roster,
             limits,
+            hand: Hand::default(),
             store,
             recorder,
             recording,

@@ -3,8 +3,10 @@
 //! One step: the supervisor looks at every rule and may change the mode; the intention of every visitor is weighed;
 //! the mode says what the machine does; in `following` motion proposes and safety disposes.
 
+mod braking;
 mod following;
 mod foretold;
+mod jogging;
 mod modes;
 pub mod outlook;
 mod requests;
@@ -30,9 +32,11 @@ use crate::safety::vetted::Vetted;
 use crate::scene::Scene;
 use crate::snapshot::{RuleId, StopCause};
 use crate::time::{Span, Time};
+use braking::Braking;
 use following::Following;
 pub use following::{IN_PLACE_M, IN_PLACE_MPS};
 pub use foretold::Foretold;
+use jogging::Jog;
 pub use requests::{Answer, Outcome, Request};
 
 /// What the engine is built with. Right once built.
@@ -90,6 +94,9 @@ pub struct Engine {
     governor: Option<Governor>,
     stepped_at: Option<Time>,
     following: Following,
+    jog: Option<Jog>,
+    /// The stop under way, to be measured.
+    braking: Option<Braking>,
     events: Vec<Event>,
     pending: Vec<EventKind>,
 }
@@ -123,6 +130,8 @@ impl Engine {
                 config.motion,
                 config.standing.unwrap_or(config.intention_rule.standing()),
             ),
+            jog: None,
+            braking: None,
             events: Vec::new(),
             pending: Vec::new(),
             scene,
@@ -156,6 +165,10 @@ impl Engine {
             Observation::Machine(report) => {
                 let rests = report.velocity.norm() < AT_REST_MPS;
                 self.rests_since = if rests { self.rests_since.or(Some(report.answered_at)) } else { None };
+                if let Some(came_to) = self.braking.as_mut().and_then(|b| b.watch(&report, rests)) {
+                    self.braking = None;
+                    self.pending.push(came_to);
+                }
                 self.report = Some(report);
             }
             Observation::Inputs(inputs) => self.inputs = inputs,
@@ -179,6 +192,7 @@ impl Engine {
         self.supervise(now);
         self.progress_homing(now);
         self.keep_up_with_the_machine(now);
+        let jog = self.jog_now(now);
         let config = &self.config;
         let wish = self.following.wanted(
             &self.persons,
@@ -218,6 +232,13 @@ impl Engine {
                         conflict => self.supervisor.separation(conflict, now, &mut self.pending),
                     }
                     self.pending.extend(self.following.served(&measured, &self.scene, &self.persons));
+                } else if let Some((order, cap_mps)) = jog {
+                    let inside = config.travel.shrunk(self.parameters.travel_margin_m);
+                    let wanted = order.velocity(governor.commanded().position(), &inside, cap_mps);
+                    let slower = [wanted, wanted * 0.5, wanted * 0.2];
+                    let choice = governor.govern(&slower, &measured, &separation, config.period);
+                    self.supervisor.separation(choice.conflict, now, &mut self.pending);
+                    self.following.rest_at(governor.commanded().position());
                 } else {
                     governor.protective_brake(&separation, config.period);
                     self.following.rest_at(governor.commanded().position());

@@ -1,5 +1,6 @@
 //! What happened, for the record: every change of mode, every rule breached or cleared, every act.
 
+use crate::frames::{Floor, Planar};
 use crate::mode::Mode;
 use crate::observation::PersonId;
 use crate::reason::Reason;
@@ -51,5 +52,27 @@ pub enum EventKind {
         person: PersonId,
         /// Index of the object in the scene.
         object: usize,
+    },
+    /// A column that was stopped in motion rests, as measured.
+    CameToRest {
+        /// When the stop began, m/s.
+        velocity: Planar,
+        /// From the stop to rest, s.
+        secs: f64,
+        /// The way along x and y, m.
+        distance: Planar,
+        /// The way along x and y that separation allowed for, m.
+        allowed: Planar,
+        /// Deceleration of x and y from nine tenths to one tenth of the speed, m/s2; none for an axis that hardly moved.
+        braking_mps2: [Option<f64>; 2],
+    },
+    /// The column is moved by hand, from here.
+    JogBegan(Floor),
+    /// It is not any more.
+    JogEnded {
+        /// Where the column was then.
+        at: Floor,
+        /// Why.
+        because: Reason,
     },
 }

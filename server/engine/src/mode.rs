@@ -9,7 +9,7 @@
 //!     └── reset (cause gone) ── latched_stop, faulted ◀─ R8
 //! ```
 //!
-//! A protective stop that came while homing goes back to homing. `tests/modes.rs` explores every state, and
+//! A jog leads from `disarmed`, homed, to `ready`, and stays there. A protective stop that came while homing goes back to homing. `tests/modes.rs` explores every state, and
 //! `covr-wire` writes the table into `server/SAFETY.md`.
 //! It never moves anything: it says what is allowed. Reset starts nothing; arming is a second act.
 
@@ -47,6 +47,8 @@ pub enum RequestKind {
     Stop,
     /// Leave a latched stop or a fault; starts nothing.
     Reset,
+    /// Move by hand for as long as the order is given anew (hold-to-run).
+    Jog,
 }
 
 /// What happens to the machine without anybody's asking.
@@ -94,7 +96,7 @@ impl Mode {
 
 impl RequestKind {
     /// Every request, in the order of the table.
-    pub const ALL: [Self; 5] = [Self::Home, Self::Arm, Self::Disarm, Self::Stop, Self::Reset];
+    pub const ALL: [Self; 6] = [Self::Home, Self::Arm, Self::Disarm, Self::Stop, Self::Reset, Self::Jog];
 
     /// The name on every surface.
     pub const fn name(self) -> &'static str {
@@ -104,6 +106,7 @@ impl RequestKind {
             Self::Disarm => "disarm",
             Self::Stop => "stop",
             Self::Reset => "reset",
+            Self::Jog => "jog",
         }
     }
 }
@@ -147,7 +150,7 @@ pub enum Response {
 /// The table: every mode times every request.
 pub fn respond(mode: Mode, request: RequestKind, conditions: &Conditions) -> Response {
     use Mode::{Disarmed, Faulted, Following, Homing, LatchedStop, ProtectiveStop, Ready};
-    use RequestKind::{Arm, Disarm, Home, Reset, Stop};
+    use RequestKind::{Arm, Disarm, Home, Jog, Reset, Stop};
     use Response::{AlreadySo, Go, Refuse};
     match (mode, request) {
         (LatchedStop, Stop) => AlreadySo(Reason::StoppedAlready),
@@ -176,6 +179,13 @@ pub fn respond(mode: Mode, request: RequestKind, conditions: &Conditions) -> Res
         },
         (ProtectiveStop, Reset) => Refuse(Reason::ClearsByItself),
         (Disarmed | Homing | Ready | Following, Reset) => AlreadySo(Reason::NothingToReset),
+
+        (Disarmed, Jog) if !conditions.homed => Refuse(Reason::HomeFirst),
+        (Disarmed, Jog) if conditions.moves => Refuse(Reason::WaitForRest),
+        (Disarmed | Ready, Jog) => Go(Ready),
+        (Homing, Jog) => Refuse(Reason::WaitForHoming),
+        (Following | ProtectiveStop, Jog) => Refuse(Reason::DisarmFirst),
+        (LatchedStop | Faulted, Jog) => Refuse(Reason::ResetFirst),
     }
 }
 
@@ -231,22 +241,22 @@ mod tests {
                 ));
             }
         }
-        // home arm disarm stop reset
+        // home arm disarm stop reset jog
         let expected = "\
-            disarmed unhomed: homing refuse already latched_stop already\n\
-            homing unhomed: already refuse disarmed latched_stop already\n\
-            ready unhomed: homing following disarmed latched_stop already\n\
-            following unhomed: refuse already disarmed latched_stop already\n\
-            protective_stop unhomed: refuse already disarmed latched_stop refuse\n\
-            latched_stop unhomed: refuse refuse already already disarmed\n\
-            faulted unhomed: refuse refuse already latched_stop disarmed\n\
-            disarmed homed: homing following already latched_stop already\n\
-            homing homed: already refuse disarmed latched_stop already\n\
-            ready homed: homing following disarmed latched_stop already\n\
-            following homed: refuse already disarmed latched_stop already\n\
-            protective_stop homed: refuse already disarmed latched_stop refuse\n\
-            latched_stop homed: refuse refuse already already disarmed\n\
-            faulted homed: refuse refuse already latched_stop disarmed\n";
+            disarmed unhomed: homing refuse already latched_stop already refuse\n\
+            homing unhomed: already refuse disarmed latched_stop already refuse\n\
+            ready unhomed: homing following disarmed latched_stop already ready\n\
+            following unhomed: refuse already disarmed latched_stop already refuse\n\
+            protective_stop unhomed: refuse already disarmed latched_stop refuse refuse\n\
+            latched_stop unhomed: refuse refuse already already disarmed refuse\n\
+            faulted unhomed: refuse refuse already latched_stop disarmed refuse\n\
+            disarmed homed: homing following already latched_stop already ready\n\
+            homing homed: already refuse disarmed latched_stop already refuse\n\
+            ready homed: homing following disarmed latched_stop already ready\n\
+            following homed: refuse already disarmed latched_stop already refuse\n\
+            protective_stop homed: refuse already disarmed latched_stop refuse refuse\n\
+            latched_stop homed: refuse refuse already already disarmed refuse\n\
+            faulted homed: refuse refuse already latched_stop disarmed refuse\n";
         assert_eq!(table, expected);
     }
 
@@ -269,9 +279,10 @@ mod tests {
     fn nothing_takes_over_a_column_that_still_moves() {
         let moves = Conditions { moves: true, ..conditions(true, None) };
         for mode in Mode::ALL {
-            for request in [RequestKind::Home, RequestKind::Arm] {
+            for request in [RequestKind::Home, RequestKind::Arm, RequestKind::Jog] {
                 let response = respond(mode, request, &moves);
-                assert!(!matches!(response, Go(_)), "{mode:?} {request:?}: {response:?}");
+                let stays = response == Go(mode);
+                assert!(stays || !matches!(response, Go(_)), "{mode:?} {request:?}: {response:?}");
             }
         }
     }

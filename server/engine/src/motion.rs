@@ -4,6 +4,7 @@
 
 pub mod arrival;
 pub mod foresight;
+pub mod jog;
 pub mod planner;
 pub mod proxy;
 pub mod standing;

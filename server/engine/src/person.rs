@@ -115,6 +115,11 @@ impl Person {
         self.client_present = present;
     }
 
+    /// When they came in.
+    pub fn entered_at(&self) -> Time {
+        self.entered_at
+    }
+
     /// Who.
     pub fn id(&self) -> PersonId {
         self.id

@@ -184,6 +184,10 @@ pub enum Reason {
     PersonStillTracked(PersonId),
     /// The person has left.
     PersonLeft(PersonId),
+    /// Confirm clear: this person is in the arena.
+    PersonInside(PersonId),
+    /// Somebody looked: nobody is in the arena.
+    ArenaConfirmedClear,
     /// There is no object of this index.
     NoSuchObject {
         /// As asked.
@@ -209,4 +213,21 @@ pub enum Reason {
     },
     /// The scene is in force.
     SceneActivated,
+    /// Jog: the column is moved for as long as the order is given anew.
+    JogsWhileHeld,
+    /// Jog: its way is none, or its speed is not above 0 and up to this, the machine's, m/s.
+    NoJogOrder {
+        /// The machine's greatest speed, m/s.
+        fastest_mps: f64,
+    },
+    /// Jog: the place is outside the travel.
+    JogOutsideTravel,
+    /// Jog: let go.
+    JogLetGo,
+    /// Jog: the order was not given anew.
+    JogSilent,
+    /// Jog: a rule asked for a stop a moment ago, or the machine has only just become ready.
+    JogNotYet,
+    /// Jog: the machine is in another mode.
+    JogOver(Mode),
 }

@@ -109,6 +109,8 @@ pub struct ColumnState {
     pub arrival_secs: Option<f64>,
     /// When it could be there at its limits with nobody in the way, s from now; none when nobody is served.
     pub least_arrival_secs: Option<f64>,
+    /// The greatest speed of a jog as things are, m/s; none where none is taken.
+    pub jog_speed_mps: Option<f64>,
     /// Motor currents x, y, A.
     pub current_amps: [f64; 2],
     /// Positions are in the room frame.
@@ -124,6 +126,8 @@ pub enum Activity {
     Homing,
     /// Homed, holding, not armed.
     Ready,
+    /// Moved by hand, for as long as somebody holds the button.
+    Jogged,
     /// Armed, and there is nobody to serve, or nothing to serve them.
     Waiting,
     /// On its way to where it is wanted.

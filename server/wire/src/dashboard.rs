@@ -8,6 +8,8 @@ mod event;
 mod health;
 mod snapshot;
 
+use covr_engine::frames::{Floor, Planar};
+use covr_engine::motion::jog::{Aim, JogOrder};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
@@ -36,6 +38,18 @@ pub enum FromDashboard {
         #[serde(default)]
         reason: Option<String>,
     },
+    /// Move the column by hand (hold-to-run): an order is good for 0.3 s, so it is given anew, ten times a second, while the
+    /// button is held. In mode `ready` alone. Answered like a request.
+    Jog {
+        /// Echoed in the answer.
+        request_id: u32,
+        /// Where to; null: the hand lets go.
+        to: Option<JogAim>,
+        /// No faster than this, m/s: more than 0 and no more than the machine's. Among people and where nobody vouches for the arena
+        /// the column is slower (`column.jog_speed_mps`).
+        #[serde(default)]
+        speed_mps: f64,
+    },
     /// Home, arm, disarm or reset; confirm a person on the floor mark, or gone.
     Request {
         /// Echoed in the answer.
@@ -46,6 +60,38 @@ pub enum FromDashboard {
         #[serde(default)]
         reason: Option<String>,
     },
+}
+
+impl FromDashboard {
+    /// What its answer echoes.
+    pub const fn request_id(&self) -> u32 {
+        match self {
+            Self::Stop { request_id, .. }
+            | Self::Jog { request_id, .. }
+            | Self::Request { request_id, .. } => *request_id,
+        }
+    }
+}
+
+/// Where a jog leads, room frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+#[serde(rename_all = "snake_case")]
+pub enum JogAim {
+    /// On and on this way, x and y; its length says nothing.
+    Along([f64; 2]),
+    /// To this place of the column's centre, m.
+    Place([f64; 2]),
+}
+
+impl JogAim {
+    /// The engine's order.
+    pub fn order(self, speed_mps: f64) -> JogOrder {
+        let aim = match self {
+            Self::Along([x, y]) => Aim::Along(Planar::new(x, y)),
+            Self::Place([x, y]) => Aim::To(Floor::new(x, y)),
+        };
+        JogOrder { aim, speed_mps }
+    }
 }
 
 /// A request to the machine, other than stop.
@@ -64,6 +110,8 @@ pub enum MachineRequest {
     ConfirmOrigin(u32),
     /// The person with this id, whose headset is lost, has left the arena (R10).
     ConfirmLeft(u32),
+    /// Somebody looked: nobody is in the arena (R16). The word holds until the next stop or disarming.
+    ConfirmClear,
 }
 
 /// What the server says to a dashboard.
@@ -167,7 +215,7 @@ pub struct Event {
     /// Wall clock, RFC 3339.
     pub at: String,
     /// Kind: `mode_changed`, `rule_breached`, `rule_cleared`, `request_accepted`, `request_refused`, `stop_pressed`,
-    /// `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
+    /// `came_to_rest`, `jog_began`, `jog_ended`, `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
     /// `scene_activated`, `prior_changed`, `client_connected`, `client_gone`, `client_error`.
     pub kind: String,
     /// In plain words.
@@ -179,13 +227,16 @@ pub struct Event {
 
 impl Event {
     /// Every kind.
-    pub const KINDS: [&'static str; 18] = [
+    pub const KINDS: [&'static str; 21] = [
         "mode_changed",
         "rule_breached",
         "rule_cleared",
         "request_accepted",
         "request_refused",
         "stop_pressed",
+        "came_to_rest",
+        "jog_began",
+        "jog_ended",
         "person_entered",
         "person_left",
         "served",

@@ -17,8 +17,8 @@ use crate::client::{
 };
 use crate::convention::ClientFrame;
 use crate::dashboard::{
-    Client, Event, FromDashboard, LinkThresholds, MachineHealth, MachineLink, MachineRequest, MachineShape,
-    Outcome, Snapshot, Surroundings, ToDashboard,
+    Client, Event, FromDashboard, JogAim, LinkThresholds, MachineHealth, MachineLink, MachineRequest,
+    MachineShape, Outcome, Snapshot, Surroundings, ToDashboard,
 };
 use crate::reason::Reason;
 use crate::sample;
@@ -159,6 +159,9 @@ pub fn from_dashboard() -> Vec<FromDashboard> {
             request: MachineRequest::Reset,
             reason: Some("the hand is out of the way".into()),
         },
+        FromDashboard::Jog { request_id: 11, to: Some(JogAim::Along([1.0, 0.0])), speed_mps: 0.1 },
+        FromDashboard::Jog { request_id: 12, to: Some(JogAim::Place([2.0, 1.5])), speed_mps: 0.25 },
+        FromDashboard::Jog { request_id: 13, to: None, speed_mps: 0.0 },
         FromDashboard::Request { request_id: 10, request: MachineRequest::ConfirmOrigin(3), reason: None },
     ]
 }

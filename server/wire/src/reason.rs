@@ -404,6 +404,38 @@ pub enum Reason {
         /// Its W.
         other_weight: f64,
     },
+    /// Confirm clear: somebody is in the arena.
+    PersonInside {
+        /// Name.
+        person: String,
+    },
+    /// Somebody looked: nobody is in the arena.
+    ArenaConfirmedClear,
+    /// Jog: the column is moved for as long as the order is given anew.
+    JogsWhileHeld,
+    /// Jog: a way without length, or a speed that this machine does not have.
+    NoJogOrder {
+        /// The machine's greatest speed, m/s.
+        fastest_mps: f64,
+    },
+    /// Jog: the place is outside the travel.
+    JogOutsideTravel,
+    /// Jog: let go.
+    JogLetGo,
+    /// Jog: the order was not given anew.
+    JogSilent,
+    /// Jog: a rule asked for a stop a moment ago, or the machine has only just become ready.
+    JogNotYet,
+    /// Jog: the machine is in another mode.
+    JogOver {
+        /// Which.
+        mode: Mode,
+    },
+    /// Jog: somebody else moves the column.
+    JogHeldBy {
+        /// Who, in their own words.
+        author: String,
+    },
     /// The column: the scene is empty.
     NoObject,
     /// The column: on its way.

@@ -115,6 +115,7 @@ pub(crate) fn snapshot() -> Snapshot {
             goes_around: false,
             arrival_secs: Some(2.0),
             least_arrival_secs: Some(1.6),
+            jog_speed_mps: None,
             current_amps: [0.5, 0.4],
             homed: true,
         },

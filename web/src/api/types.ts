@@ -11,6 +11,7 @@ export type {
   Decision,
   Event as WireEvent,
   FromDashboard,
+  JogAim,
   KeepOutDocument,
   LinkThresholds,
   MachineHealth,

@@ -13,7 +13,7 @@ const SCENE = event("2026-01-01T10:00:03Z", "scene_activated", "scene", { scene:
 describe("the timeline", () => {
   it("puts every kind into one group, and an unknown one somewhere visible", () => {
     expect([groupOf("touch_began"), groupOf("rule_cleared"), groupOf("made_up")]).toEqual(["people", "rules", "mode"]);
-    expect(kindsOf({ ...NO_FILTER, groups: ["stops", "priors"] })).toEqual(["stop_pressed", "prior_changed"]);
+    expect(kindsOf({ ...NO_FILTER, groups: ["stops", "priors"] })).toEqual(["stop_pressed", "came_to_rest", "prior_changed"]);
     expect(kindsOf(NO_FILTER)).toBeNull();
   });
 

@@ -3,9 +3,9 @@ import type { WireEvent } from "../api/types";
 
 /** The kinds, by what they are about. */
 export const GROUPS = {
-  stops: ["stop_pressed"],
+  stops: ["stop_pressed", "came_to_rest"],
   rules: ["rule_breached", "rule_cleared"],
-  mode: ["mode_changed", "request_accepted", "request_refused"],
+  mode: ["mode_changed", "request_accepted", "request_refused", "jog_began", "jog_ended"],
   people: ["person_entered", "person_left", "served", "origin_changed", "touch_began", "touch_ended"],
   priors: ["prior_changed"],
   scenes: ["scene_activated", "scene_stored", "scene_event"],

@@ -5,7 +5,7 @@
 import { createSignal, onCleanup, type Accessor } from "solid-js";
 import { createStore, reconcile } from "solid-js/store";
 import { listEvents, postStop } from "../api/http";
-import type { MachineRequest, Snapshot, WireEvent } from "../api/types";
+import type { JogAim, MachineRequest, Snapshot, WireEvent } from "../api/types";
 import { words } from "../i18n";
 import { troubleOf } from "../lib/trouble";
 import { Connection } from "./connection";
@@ -42,6 +42,8 @@ export interface Live {
   readonly stop: Accessor<StopState>;
   readonly pressStop: () => void;
   readonly ask: (request: MachineRequest, reason?: string) => Promise<Answer>;
+  /** One order to jog, good for a moment; null lets go. */
+  readonly jog: (to: JogAim | null, speedMps: number) => Promise<Answer>;
   readonly connectNow: () => void;
   /** Who sits here, and what they may. */
   readonly identity: Identity;
@@ -157,6 +159,7 @@ export function createLive(): Live {
       stopSender.press(words().shell.stop.pressedHere);
     },
     ask: (request, reason) => requests.ask(request, reason ?? null),
+    jog: (to, speedMps) => requests.jog(to, speedMps),
     connectNow: () => {
       connection.connect();
     },

@@ -2,7 +2,7 @@
  * Requests to the machine and their answers. A request that the server does not answer in time is reported as
  * unanswered, never repeated: unlike a stop, it may move the machine.
  */
-import type { FromDashboard, MachineRequest, Outcome, Reason } from "../api/types";
+import type { FromDashboard, JogAim, MachineRequest, Outcome, Reason } from "../api/types";
 
 /** What came of a request. */
 export type Answer =
@@ -33,8 +33,17 @@ export class Requests {
 
   /** Asks, and waits for the answer. */
   ask(request: MachineRequest, reason: string | null): Promise<Answer> {
+    return this.#put((request_id) => ({ type: "request", request_id, request, reason }));
+  }
+
+  /** One order to jog, good for a moment; null lets go. */
+  jog(to: JogAim | null, speedMps: number): Promise<Answer> {
+    return this.#put((request_id) => ({ type: "jog", request_id, to, speed_mps: speedMps }));
+  }
+
+  #put(message: (requestId: number) => FromDashboard): Promise<Answer> {
     const requestId = this.newId();
-    if (!this.#send({ type: "request", request_id: requestId, request, reason })) {
+    if (!this.#send(message(requestId))) {
       return Promise.resolve({ kind: "unanswered", because: "not_sent" });
     }
     return new Promise((resolve) => {

@@ -33,6 +33,7 @@ function live(snapshot: Snapshot | null, freshness: Freshness, ask: Live["ask"])
     nowMillis: () => 0,
     stop: () => ({ kind: "idle" }),
     pressStop: () => undefined,
+    jog: () => Promise.reject(new Error("nothing may be jogged")),
     connectNow: () => undefined,
     identity: anybody(),
   };

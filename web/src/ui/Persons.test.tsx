@@ -32,6 +32,7 @@ function live(change: Partial<Person>): Live {
     nowMillis: () => 0,
     stop: () => ({ kind: "idle" }),
     pressStop: () => undefined,
+    jog: () => Promise.reject(new Error("nothing may be jogged")),
     connectNow: () => undefined,
     identity: anybody(),
   };

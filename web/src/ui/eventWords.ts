@@ -77,6 +77,18 @@ function textOf(event: WireEvent, label: (object: string) => string): EventWords
     case "person_left":
     case "origin_changed":
       return of(text[event.kind], ["name"]);
+    case "came_to_rest": {
+      const way = detail["distance_m"];
+      const secs = number("secs");
+      if (!Array.isArray(way) || secs === null) return null;
+      return { text: text.came_to_rest(decimal(Math.hypot(...way.map(Number)), 3), decimal(secs, 2)), server: null };
+    }
+    case "jog_began":
+      return { text: text.jog_began, server: null };
+    case "jog_ended": {
+      const because = detail["why"];
+      return { text: text.jog_ended, server: isReason(because) ? said(because, event.summary, label) : null };
+    }
     case "served":
       return of(text.served, ["object", "name"]);
     case "touch_began":

@@ -55,6 +55,7 @@ export function testLive(scene: SceneDocument = MOCK_SCENE): TestLive {
       stop: () => ({ kind: "idle" }),
       pressStop: () => undefined,
       ask: () => Promise.reject(new Error("nothing may be asked")),
+      jog: () => Promise.reject(new Error("nothing may be jogged")),
       connectNow: () => undefined,
       identity: anybody(),
     },

@@ -5,6 +5,7 @@ import { words } from "../i18n";
 import { decimal, metres } from "../lib/format";
 import type { Live } from "../live/live";
 import { Configuration } from "../ui/Configuration";
+import { Jog } from "../ui/Jog";
 import { Said } from "../ui/Said";
 
 /** The view. */
@@ -17,6 +18,7 @@ export function MachineView(props: { readonly live: Live }): JSX.Element {
         {(snapshot) => (
           <>
             <Axes column={snapshot().column} shape={props.live.server()?.shape ?? null} />
+            <Jog live={props.live} />
             <Show
               when={snapshot().machine_health}
               fallback={

@@ -47,6 +47,7 @@ pub fn keys() -> impl Iterator<Item = &'static str> {
 pub const fn dashboard_key(message: &FromDashboard) -> &'static str {
     match message {
         FromDashboard::Stop { .. } => "dashboard stop",
+        FromDashboard::Jog { .. } => "dashboard jog",
         FromDashboard::Request { request, .. } => match request {
             MachineRequest::Home => "dashboard home",
             MachineRequest::Arm => "dashboard arm",
@@ -54,6 +55,7 @@ pub const fn dashboard_key(message: &FromDashboard) -> &'static str {
             MachineRequest::Reset => "dashboard reset",
             MachineRequest::ConfirmOrigin(_) => "dashboard confirm_origin",
             MachineRequest::ConfirmLeft(_) => "dashboard confirm_left",
+            MachineRequest::ConfirmClear => "dashboard confirm_clear",
         },
     }
 }
@@ -137,14 +139,17 @@ const TABLE: &[(&str, Who)] = &[
     ("POST /api/v1/reset", RUN),
     ("POST /api/v1/persons/{id}/confirm", RUN),
     ("POST /api/v1/persons/{id}/left", RUN),
+    ("POST /api/v1/arena/clear", RUN),
     ("GET /api/v1/tokens", ADMINISTER),
     ("DELETE /api/v1/tokens/{id}", ADMINISTER),
+    ("dashboard jog", RUN),
     ("dashboard home", RUN),
     ("dashboard arm", RUN),
     ("dashboard disarm", RUN),
     ("dashboard reset", RUN),
     ("dashboard confirm_origin", RUN),
     ("dashboard confirm_left", RUN),
+    ("dashboard confirm_clear", RUN),
 ];
 
 #[cfg(test)]

@@ -53,6 +53,7 @@ pub fn routes() -> OpenApiRouter<Arc<App>> {
         .routes(routes!(stop))
         .routes(routes!(confirm))
         .routes(routes!(left))
+        .routes(routes!(clear))
 }
 
 /// The whole state now.
@@ -139,6 +140,14 @@ async fn left(
 ) -> Result<Json<Answered>, Problem> {
     let person = inside(&app, &id)?;
     answered(&app, &app.confirm_left(&asker, person).await?)
+}
+
+/// Somebody looked: nobody is in the arena (R16). The word holds until the next stop or disarming.
+#[utoipa::path(post, path = "/arena/clear", tag = "machine",
+    responses((status = 200, body = Answered), (status = 409, description = "Refused: somebody is in the arena", body = Problem),
+        (status = 503, description = "Busy", body = Problem)))]
+async fn clear(State(app): State<Arc<App>>, asker: Asker) -> Result<Json<Answered>, Problem> {
+    answered(&app, &app.confirm_clear(&asker).await?)
 }
 
 fn inside(app: &App, id: &str) -> Result<PersonId, Problem> {

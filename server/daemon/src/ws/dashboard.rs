@@ -4,6 +4,7 @@
 //! whole snapshot: nothing is ever patched.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use axum::body::Bytes;
@@ -28,6 +29,7 @@ use crate::access::table::dashboard_key;
 use crate::access::{Caller, Standing};
 use crate::app::{App, Asker};
 use crate::control::{NotDelivered, StopLaneName};
+use crate::hand::Ordered;
 use crate::live::wire_snapshot;
 
 /// Accept a dashboard.
@@ -52,6 +54,18 @@ async fn serve(app: Arc<App>, socket: WebSocket, caller: Caller, _seat: OwnedSem
         _ = write(app.clone(), sink, caller.clone(), answers_out) => {}
         () = read(app.clone(), stream, caller.clone(), answers, heard) => {}
         () = attend(&app, &caller, &heard_last) => {}
+    }
+}
+
+/// Lets go of the column when its dashboard is gone.
+struct LetsGo {
+    app: Arc<App>,
+    socket: u64,
+}
+
+impl Drop for LetsGo {
+    fn drop(&mut self) {
+        self.app.hand.gone(&self.app.control, self.socket);
     }
 }
 
@@ -104,7 +118,8 @@ async fn write(
     }
 }
 
-/// A stop waits for nothing that came before it: each message is handled on a task of its own.
+/// A stop waits for nothing that came before it: each message is handled on a task of its own. Orders to jog are put to the
+/// machine here, in the order in which they came: letting go is overtaken by none.
 async fn read(
     app: Arc<App>,
     mut stream: SplitStream<WebSocket>,
@@ -112,6 +127,7 @@ async fn read(
     answers: mpsc::Sender<ToDashboard>,
     heard: watch::Sender<Instant>,
 ) {
+    let hand = LetsGo { app: app.clone(), socket: NEXT_SOCKET.fetch_add(1, Ordering::Relaxed) };
     while let Some(Ok(message)) = stream.next().await {
         let received_at = Instant::now();
         heard.send_replace(received_at);
@@ -121,49 +137,100 @@ async fn read(
             Message::Ping(_) | Message::Pong(_) => continue,
             Message::Close(_) => return,
         };
-        let (app, caller, answers) = (app.clone(), caller.clone(), answers.clone());
+        let said = Said::new(&app, caller.clone(), &text, hand.socket);
+        let (app, answers) = (app.clone(), answers.clone());
         tokio::spawn(async move {
-            let answer = answer(&app, caller, &text, received_at).await;
+            let answer = said.answer(&app, received_at).await;
             // The connection may have gone meanwhile; then nobody waits for this.
             let _ = answers.send(answer).await;
         });
     }
 }
 
-async fn answer(app: &App, caller: Caller, text: &str, received_at: Instant) -> ToDashboard {
-    // A page that is asked for no token has no other name.
-    let name = caller.holder().is_none().then(|| "dashboard".into());
-    let asker = Asker { by: "dashboard", given: name, caller };
-    match serde_json::from_str(text) {
-        Ok(message) if !app.roster.allows(&asker.caller, dashboard_key(&message)) => {
-            let (FromDashboard::Request { request_id, .. } | FromDashboard::Stop { request_id, .. }) =
-                message;
-            refused_in_words(request_id, app.roster.why_not(&asker.caller, dashboard_key(&message)))
-        }
-        Ok(FromDashboard::Stop { request_id, reason }) => {
-            match app.stop(&asker, StopLaneName::Dashboard, given(reason), received_at).await {
-                Ok(to_drive) => {
-                    let micros = to_drive.as_micros() as u64;
-                    ToDashboard::answer(request_id, Outcome::Accepted, Reason::Stopped, Some(micros))
-                }
-                Err(why) => refused(request_id, why.reason()),
+/// A message, read.
+enum Said {
+    Stop {
+        request_id: u32,
+        reason: Option<String>,
+        asker: Asker,
+    },
+    Request {
+        request_id: u32,
+        request: MachineRequest,
+        reason: Option<String>,
+        asker: Asker,
+    },
+    /// An order to jog, put to the machine already.
+    Jog {
+        request_id: u32,
+        ordered: Result<Ordered, Reason>,
+        asker: Asker,
+    },
+    /// Not understood, or not for this caller.
+    Refused(ToDashboard),
+}
+
+impl Said {
+    fn new(app: &App, caller: Caller, text: &str, socket: u64) -> Self {
+        // A page that is asked for no token has no other name.
+        let name = caller.holder().is_none().then(|| "dashboard".into());
+        let asker = Asker { by: "dashboard", given: name, caller };
+        match serde_json::from_str(text) {
+            Ok(message) if !app.roster.allows(&asker.caller, dashboard_key(&message)) => {
+                let why = app.roster.why_not(&asker.caller, dashboard_key(&message));
+                Self::Refused(refused_in_words(message.request_id(), why))
+            }
+            Ok(FromDashboard::Stop { request_id, reason }) => {
+                Self::Stop { request_id, reason: given(reason), asker }
+            }
+            Ok(FromDashboard::Request { request_id, request, reason }) => {
+                Self::Request { request_id, request, reason: given(reason), asker }
+            }
+            Ok(FromDashboard::Jog { request_id, to, speed_mps }) => {
+                let order = to.map(|aim| aim.order(speed_mps));
+                let ordered = app.hand.order(&app.control, socket, asker.author(), order);
+                Self::Jog { request_id, ordered, asker }
+            }
+            Err(error) => {
+                // Answer the request that was meant, where it can be told.
+                let meant = serde_json::from_str::<serde_json::Value>(text).ok();
+                let id =
+                    meant.and_then(|m| m.get("request_id")?.as_u64()).and_then(|id| u32::try_from(id).ok());
+                Self::Refused(refused_in_words(id.unwrap_or(0), format!("not understood: {error}")))
             }
         }
-        Ok(FromDashboard::Request { request_id, request, reason }) => {
-            match ask(app, &asker, request, given(reason)).await {
-                Ok(answer) => {
-                    let outcome = answer.outcome.into();
-                    ToDashboard::answer(request_id, outcome, app.reason(&answer), None)
+    }
+
+    async fn answer(self, app: &App, received_at: Instant) -> ToDashboard {
+        match self {
+            Self::Refused(answer) => answer,
+            Self::Stop { request_id, reason, asker } => {
+                match app.stop(&asker, StopLaneName::Dashboard, reason, received_at).await {
+                    Ok(to_drive) => {
+                        let micros = to_drive.as_micros() as u64;
+                        ToDashboard::answer(request_id, Outcome::Accepted, Reason::Stopped, Some(micros))
+                    }
+                    Err(why) => refused(request_id, why.reason()),
                 }
-                Err(why) => refused(request_id, why),
+            }
+            Self::Request { request_id, request, reason, asker } => {
+                answered(app, request_id, ask(app, &asker, request, reason).await)
+            }
+            Self::Jog { request_id, ordered, asker } => {
+                let answer = match ordered {
+                    Ok(ordered) => app.jogged(&asker, ordered).await.map_err(NotDelivered::reason),
+                    Err(why) => Err(why),
+                };
+                answered(app, request_id, answer)
             }
         }
-        Err(error) => {
-            // Answer the request that was meant, where it can be told.
-            let meant = serde_json::from_str::<serde_json::Value>(text).ok();
-            let id = meant.and_then(|m| m.get("request_id")?.as_u64()).and_then(|id| u32::try_from(id).ok());
-            refused_in_words(id.unwrap_or(0), format!("not understood: {error}"))
-        }
+    }
+}
+
+fn answered(app: &App, request_id: u32, answer: Result<Answer, Reason>) -> ToDashboard {
+    match answer {
+        Ok(answer) => ToDashboard::answer(request_id, answer.outcome.into(), app.reason(&answer), None),
+        Err(why) => refused(request_id, why),
     }
 }
 
@@ -179,6 +246,7 @@ async fn ask(
         MachineRequest::Disarm => app.request(asker, RequestKind::Disarm, reason).await,
         MachineRequest::Reset if reason.is_none() => return Err(Reason::ResetNeedsReason),
         MachineRequest::Reset => app.request(asker, RequestKind::Reset, reason).await,
+        MachineRequest::ConfirmClear => app.confirm_clear(asker).await,
         MachineRequest::ConfirmOrigin(person) if app.persons.is_inside(PersonId(person)) => {
             app.confirm_origin(asker, PersonId(person)).await
         }
@@ -224,6 +292,9 @@ async fn say(sink: &mut SplitSink<WebSocket, Message>, message: &ToDashboard) ->
     let text = serde_json::to_string(message).map_err(|_| Gone)?;
     send(sink, Message::Text(text.into())).await
 }
+
+/// Numbers the sockets of dashboards.
+static NEXT_SOCKET: AtomicU64 = AtomicU64::new(0);
 
 /// The longest message from a dashboard; longer ones end the connection.
 pub const MOST_MESSAGE_BYTES: usize = 64 * 1024;

@@ -1,6 +1,7 @@
 //! What rules, stop inputs and the machine itself do to the mode. What the mode table says is in `mode`; here are the effects.
 
 use super::Engine;
+use super::braking::Braking;
 use crate::event::EventKind;
 use crate::machine::Homing;
 use crate::mode::{self, Mode, Trigger};
@@ -120,6 +121,10 @@ impl Engine {
         self.stop = None;
         if matches!(to, Mode::Disarmed | Mode::LatchedStop | Mode::Faulted) {
             self.arena_confirmed_clear = false;
+        }
+        let stops = matches!(to, Mode::Disarmed | Mode::ProtectiveStop | Mode::LatchedStop | Mode::Faulted);
+        if let Some(report) = self.report.filter(|_| stops && to != self.mode) {
+            self.braking = Braking::begin(now, &report, &self.config.limits, self.parameters.reaction);
         }
         if to != self.mode {
             self.pending.push(EventKind::ModeChanged { from: self.mode, to, rule, because });

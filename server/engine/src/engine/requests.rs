@@ -9,6 +9,7 @@ use crate::event::EventKind;
 use crate::frames::Floor;
 use crate::machine::Homing;
 use crate::mode::{self, Conditions, Mode, RequestKind, Response};
+use crate::motion::jog::JogOrder;
 use crate::observation::PersonId;
 use crate::reason::Reason;
 use crate::safety::supervisor::GameMaster;
@@ -26,8 +27,14 @@ pub enum Request {
     ConfirmOrigin(PersonId),
     /// A person whose headset is lost has left the arena: somebody saw it.
     ConfirmLeft(PersonId),
+    /// Somebody looked: nobody is in the arena (R16). The word holds until the next stop or disarming.
+    ConfirmClear,
     /// New priors by object index, each 0 to 1.
     SetPriors(Vec<(usize, f64)>),
+    /// Move by hand; the order is good for a moment (hold-to-run).
+    Jog(JogOrder),
+    /// The hand lets go of the jog.
+    LetGo,
     /// Another scene, whole; refused while homing.
     ActivateScene(Arc<Scene>),
 }
@@ -59,7 +66,10 @@ impl Engine {
             Request::Machine(kind, reason) => self.request_machine(now, kind, reason.unwrap_or_default()),
             Request::ConfirmOrigin(id) => self.confirm_origin(id),
             Request::ConfirmLeft(id) => self.confirm_left(now, id),
+            Request::ConfirmClear => self.confirm_clear(),
             Request::SetPriors(changes) => self.set_priors(&changes),
+            Request::Jog(order) => self.take_jog(now, order),
+            Request::LetGo => self.let_go_of_jog(),
             Request::ActivateScene(scene) => self.activate(scene),
         };
         self.record(now);
@@ -70,6 +80,7 @@ impl Engine {
         match mode::respond(self.mode, kind, &self.conditions(now)) {
             Response::AlreadySo(reason) => Answer { outcome: Outcome::AlreadySo, reason },
             Response::Refuse(reason) => refused(reason),
+            Response::Go(_) if kind == RequestKind::Jog => refused(self.no_jog_order()),
             Response::Go(Mode::Homing) if let Some(reason) = self.shape_on_the_way_home() => refused(reason),
             Response::Go(to) => {
                 match kind {
@@ -80,7 +91,7 @@ impl Engine {
                         self.arena_confirmed_clear = self.persons.is_empty();
                         self.enter(to, None, Reason::Asked(kind), now);
                     }
-                    RequestKind::Disarm => self.enter(to, None, Reason::Asked(kind), now),
+                    RequestKind::Disarm | RequestKind::Jog => self.enter(to, None, Reason::Asked(kind), now),
                     RequestKind::Reset => {
                         self.supervisor.software_stop(None, now, &mut self.pending);
                         self.enter(to, None, Reason::ResetAsked(reason), now);
@@ -150,6 +161,15 @@ impl Engine {
         }
     }
 
+    fn confirm_clear(&mut self) -> Answer {
+        if let Some(person) = self.persons.first() {
+            return refused(Reason::PersonInside(person.id()));
+        }
+        let outcome = if self.arena_confirmed_clear { Outcome::AlreadySo } else { Outcome::Accepted };
+        self.arena_confirmed_clear = true;
+        Answer { outcome, reason: Reason::ArenaConfirmedClear }
+    }
+
     pub(super) fn leave(&mut self, id: PersonId) {
         let before = self.persons.len();
         self.persons.retain(|p| p.id() != id);
@@ -196,11 +216,11 @@ impl Engine {
     }
 }
 
-fn accepted(reason: Reason) -> Answer {
+pub(super) fn accepted(reason: Reason) -> Answer {
     Answer { outcome: Outcome::Accepted, reason }
 }
 
-fn refused(reason: Reason) -> Answer {
+pub(super) fn refused(reason: Reason) -> Answer {
     Answer { outcome: Outcome::Refused, reason }
 }
 

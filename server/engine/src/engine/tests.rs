@@ -3,6 +3,7 @@
 mod foretold;
 mod game_master;
 mod inputs;
+mod jog;
 mod modes;
 mod rules;
 mod shown;
@@ -13,6 +14,7 @@ use crate::intention::IntentionParameters;
 use crate::machine::Homing;
 use crate::mode::RequestKind;
 use crate::motion::MotionName;
+use crate::motion::jog::{Aim, JogOrder};
 use crate::observation::PoseSample;
 use crate::safety::separation::KeptFrom;
 use crate::safety::vetted::Action;
@@ -103,7 +105,13 @@ impl Room {
     }
 
     fn ask(&mut self, kind: RequestKind) -> Answer {
-        self.engine.request(self.now, Request::Machine(kind, Some("test".into())))
+        let request = match kind {
+            RequestKind::Jog => {
+                Request::Jog(JogOrder { aim: Aim::Along(Planar::new(1.0, 0.0)), speed_mps: 0.1 })
+            }
+            kind => Request::Machine(kind, Some("test".into())),
+        };
+        self.engine.request(self.now, request)
     }
 
     fn enter(&mut self, x: f64, y: f64, yaw_rad: f64) {

@@ -79,6 +79,7 @@ impl Engine {
                 _ => None,
             },
             least_arrival_secs,
+            jog_speed_mps: self.jog_speed_mps(),
             current_amps: self.report.map_or([0.0; 2], |r| r.current_amps),
             homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
         }
@@ -88,6 +89,7 @@ impl Engine {
         match self.mode {
             Mode::Disarmed => return Activity::Released,
             Mode::Homing => return Activity::Homing,
+            Mode::Ready if self.jog.is_some() => return Activity::Jogged,
             Mode::Ready => return Activity::Ready,
             Mode::ProtectiveStop | Mode::LatchedStop | Mode::Faulted => return Activity::Stopped,
             Mode::Following => {}

@@ -69,6 +69,11 @@ pub struct Parameters {
     pub clears_after: Span,
     /// R16 and homing: creep speed, m/s.
     pub creep_speed_mps: f64,
+    /// A jog with people in the arena, m/s: reduced speed, 250 mm/s (ISO 10218-1, manual control), less what a turn adds while
+    /// one axis still slows and the other goes already.
+    pub reduced_speed_mps: f64,
+    /// Hold-to-run: an order to jog that is not given again for so long is over.
+    pub hold_to_run: Span,
 }
 
 impl Parameters {
@@ -106,6 +111,8 @@ impl Parameters {
             missed_deadlines: 3,
             clears_after: Span::from_millis(1000),
             creep_speed_mps: 0.1,
+            reduced_speed_mps: 0.24,
+            hold_to_run: Span::from_millis(300),
         }
     }
 }

@@ -203,6 +203,13 @@ impl Supervisor {
         &self.rules[usize::from(rule.0) - 1]
     }
 
+    /// A rule that demands any stop now, with its reason.
+    pub fn breached(&self) -> Option<Reason> {
+        let cause =
+            self.rules.iter().find(|r| r.status == RuleStatus::Breached && demand(r.rule).is_some())?;
+        Some(Reason::CauseStillThere { rule: cause.rule, because: Box::new(cause.reason.clone()) })
+    }
+
     /// Why a latched stop or a fault cannot be left: a rule that led to one is breached now. R4 clears by the reset itself.
     pub fn cause_still_there(&self) -> Option<Reason> {
         let grave = |r: &&RuleState| {

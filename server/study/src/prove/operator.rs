@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use covr_engine::engine::Request;
+use covr_engine::frames::{Floor, Planar};
 use covr_engine::mode::{Mode, RequestKind};
+use covr_engine::motion::jog::{Aim, JogOrder};
 use covr_engine::observation::{Observation, PersonId};
 use covr_engine::scene::Scene;
 use covr_engine::time::{Span, Time};
@@ -15,6 +17,8 @@ use crate::replay::{ClosedLoop, TrueHead};
 pub struct Operator {
     random: Random,
     scenes: Vec<Arc<Scene>>,
+    /// The column is moved by hand until then, by this order.
+    jog: Option<(Time, JogOrder)>,
     next_act: Time,
     next_care: Time,
     meddles: bool,
@@ -23,7 +27,7 @@ pub struct Operator {
 impl Operator {
     /// At the desk from `now` on, with these scenes to choose from; without meddling they only get it going again.
     pub fn new(random: Random, scenes: Vec<Arc<Scene>>, now: Time, meddles: bool) -> Self {
-        Self { random, scenes, next_act: now, next_care: now, meddles }
+        Self { random, scenes, jog: None, next_act: now, next_care: now, meddles }
     }
 
     /// Do what it is time for.
@@ -31,7 +35,12 @@ impl Operator {
         let now = control.now();
         if now >= self.next_care {
             self.next_care = now + Span::from_millis(250);
-            care(control, heads);
+            self.jog = self.jog.filter(|(until, _)| now < *until);
+            care(control, heads, self.jog.is_some());
+            // Now and then a word stays away, and the column comes to rest for want of it.
+            if let Some((_, order)) = self.jog.filter(|_| self.random.chance(0.9)) {
+                control.request(Request::Jog(order));
+            }
         }
         if self.meddles && now >= self.next_act {
             self.next_act = now + Span::from_secs(self.random.between(0.1, 3.0));
@@ -50,6 +59,7 @@ impl Operator {
             6 => control.observe(Observation::ClientGone(anybody)),
             7 => drop(control.request(Request::Machine(RequestKind::Home, None))),
             8 => drop(control.request(Request::Machine(RequestKind::Reset, None))),
+            9..=12 => self.take_into_hand(control),
             _ => {
                 let count = control.engine().scene().spec().objects.len();
                 let priors = (0..count).map(|object| (object, self.random.unit())).collect();
@@ -57,10 +67,22 @@ impl Operator {
             }
         }
     }
+
+    /// Move the column by hand for a while, along some way or to some place.
+    fn take_into_hand(&mut self, control: &mut ClosedLoop) {
+        control.request(Request::Machine(RequestKind::Disarm, None));
+        let aim = if self.random.chance(0.5) {
+            Aim::Along(Planar::new(1.0, 0.0).turned(self.random.between(-3.2, 3.2)))
+        } else {
+            Aim::To(Floor::new(self.random.between(0.0, 6.0), self.random.between(0.0, 6.0)))
+        };
+        let order = JogOrder { aim, speed_mps: self.random.between(0.02, 0.5) };
+        self.jog = Some((control.now() + Span::from_secs(self.random.between(1.0, 6.0)), order));
+    }
 }
 
-/// Get it going again.
-fn care(control: &mut ClosedLoop, heads: &[TrueHead]) {
+/// Get it going again; while it is moved by hand nobody arms it.
+fn care(control: &mut ClosedLoop, heads: &[TrueHead], jogs: bool) {
     for head in heads {
         control.observe(Observation::ClientBack(head.person));
         control.request(Request::ConfirmOrigin(head.person));
@@ -69,12 +91,12 @@ fn care(control: &mut ClosedLoop, heads: &[TrueHead]) {
         Mode::LatchedStop | Mode::Faulted => {
             control.request(Request::Machine(RequestKind::Reset, Some("looked".into())));
         }
-        Mode::Disarmed | Mode::Ready => {
+        Mode::Disarmed | Mode::Ready if !jogs => {
             let armed = control.arm();
             if armed.is_err() {
                 control.request(Request::Machine(RequestKind::Home, None));
             }
         }
-        Mode::Homing | Mode::Following | Mode::ProtectiveStop => {}
+        _ => {}
     }
 }

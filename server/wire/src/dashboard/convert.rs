@@ -82,6 +82,7 @@ impl MachineRequest {
             Self::Reset => Request::Machine(RequestKind::Reset, reason),
             Self::ConfirmOrigin(person) => Request::ConfirmOrigin(PersonId(*person)),
             Self::ConfirmLeft(person) => Request::ConfirmLeft(PersonId(*person)),
+            Self::ConfirmClear => Request::ConfirmClear,
         }
     }
 }
@@ -166,6 +167,7 @@ pub const fn request_name(kind: RequestKind) -> &'static str {
         RequestKind::Disarm => "disarm",
         RequestKind::Stop => "stop",
         RequestKind::Reset => "reset",
+        RequestKind::Jog => "jog",
     }
 }
 
@@ -229,6 +231,7 @@ fn column(state: &engine::Snapshot, names: &BTreeMap<PersonId, String>) -> Colum
         decision: reason::decision(state, names),
         arrival_secs: column.arrival_secs,
         planned_path_m: Vec::new(),
+        jog_speed_mps: column.jog_speed_mps,
         current_amps: column.current_amps,
         homed: column.homed,
     }
@@ -240,6 +243,7 @@ impl From<engine::Activity> for Activity {
             engine::Activity::Released => Self::Released,
             engine::Activity::Homing => Self::Homing,
             engine::Activity::Ready => Self::Ready,
+            engine::Activity::Jogged => Self::Jogged,
             engine::Activity::Waiting => Self::Waiting,
             engine::Activity::Approaching => Self::Approaching,
             engine::Activity::Yielding => Self::Yielding,

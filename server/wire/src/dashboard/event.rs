@@ -61,6 +61,35 @@ impl Event {
                     json!({"person": person.0, "name": who(person), "object": id}),
                 )
             }
+            EventKind::CameToRest { velocity, secs, distance, allowed, braking_mps2 } => (
+                "came_to_rest",
+                format!(
+                    "the column came to rest {:.3} m and {secs:.2} s after a stop at {:.2} m/s; {:.3} m were allowed for",
+                    distance.norm(),
+                    velocity.norm(),
+                    allowed.norm()
+                ),
+                json!({
+                    "velocity_mps": [velocity.x, velocity.y],
+                    "secs": secs,
+                    "distance_m": [distance.x, distance.y],
+                    "allowed_m": [allowed.x, allowed.y],
+                    "braking_mps2": braking_mps2,
+                }),
+            ),
+            EventKind::JogBegan(at) => (
+                "jog_began",
+                format!("the column is moved by hand from ({:.3}, {:.3}) m", at.x, at.y),
+                json!({"at_m": [at.x, at.y]}),
+            ),
+            EventKind::JogEnded { at, because } => {
+                let why = Reason::new(because, names);
+                (
+                    "jog_ended",
+                    format!("the column is moved by hand no more, at ({:.3}, {:.3}) m: {why}", at.x, at.y),
+                    json!({"at_m": [at.x, at.y], "why": why}),
+                )
+            }
         };
         Self { at_micros: event.at.micros(), at, kind: kind.into(), summary, detail }
     }

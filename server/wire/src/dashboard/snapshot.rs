@@ -56,7 +56,7 @@ pub struct Snapshot {
 /// Whether a request would be accepted now.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 pub struct RequestState {
-    /// `home`, `arm`, `disarm`, `stop` or `reset`.
+    /// `home`, `arm`, `disarm`, `stop`, `reset` or `jog`.
     pub request: String,
     /// Why it would be refused, in plain words; null if it would be accepted.
     pub refused_because: Option<String>,
@@ -143,6 +143,8 @@ pub struct Column {
     /// Where it would go from here if everybody walked on for a moment and then stood, 0.1 s apart; empty when it goes
     /// nowhere.
     pub planned_path_m: Vec<[f64; 2]>,
+    /// The greatest speed of a jog as things are, m/s; null where the mode allows none.
+    pub jog_speed_mps: Option<f64>,
     /// Motor currents, A.
     pub current_amps: [f64; 2],
     /// Positions are in the room frame.
@@ -172,6 +174,8 @@ pub enum Activity {
     Homing,
     /// Homed, holding, not armed.
     Ready,
+    /// Moved by hand, for as long as somebody holds the button.
+    Jogged,
     /// Armed, and there is nobody to serve, or nothing to serve them.
     Waiting,
     /// On its way to where it is wanted.

@@ -21,6 +21,7 @@ impl Reason {
             }
             Activity::Homing => clauses.push(Self::LooksForSwitches),
             Activity::Ready => clauses.push(Self::HoldsUnarmed),
+            Activity::Jogged => clauses.push(Self::JogsWhileHeld),
             Activity::Stopped => {
                 clauses.push(stop.map_or(Self::Stopped, |stop| Self::StoppedBy { rule: stop.rule.name() }));
                 clauses.extend(because);

@@ -111,6 +111,15 @@ impl Reason {
                 Self::ColumnInKeepOut { keep_out: keep_out.clone(), required_m: *required_m }
             }
             Engine::SceneActivated => Self::SceneActivated,
+            Engine::PersonInside(person) => Self::PersonInside { person: name(person) },
+            Engine::ArenaConfirmedClear => Self::ArenaConfirmedClear,
+            Engine::JogsWhileHeld => Self::JogsWhileHeld,
+            Engine::NoJogOrder { fastest_mps } => Self::NoJogOrder { fastest_mps: *fastest_mps },
+            Engine::JogOutsideTravel => Self::JogOutsideTravel,
+            Engine::JogLetGo => Self::JogLetGo,
+            Engine::JogSilent => Self::JogSilent,
+            Engine::JogNotYet => Self::JogNotYet,
+            Engine::JogOver(mode) => Self::JogOver { mode: (*mode).into() },
         }
     }
 }

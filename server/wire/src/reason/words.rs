@@ -170,6 +170,20 @@ impl fmt::Display for Reason {
                 }
                 write!(f, "undecided between {object} {weight:.2} and {other} {other_weight:.2}")
             }
+            Self::PersonInside { person } => write!(f, "{person} is in the arena"),
+            Self::ArenaConfirmedClear => write!(f, "the arena is clear, somebody looked"),
+            Self::JogsWhileHeld => write!(f, "moves by hand while the button is held"),
+            Self::NoJogOrder { fastest_mps } => {
+                write!(f, "a jog needs a way or a place, and a speed above 0 and up to {fastest_mps:.2} m/s")
+            }
+            Self::JogOutsideTravel => write!(f, "that place is outside the travel"),
+            Self::JogLetGo => write!(f, "let go"),
+            Self::JogSilent => write!(f, "the button's word stayed away"),
+            Self::JogNotYet => {
+                write!(f, "not yet: a rule asked for a stop less than a second ago, or it is only just ready")
+            }
+            Self::JogOver { mode } => write!(f, "now {}", in_words(*mode)),
+            Self::JogHeldBy { author } => write!(f, "{author} moves the column now"),
             Self::NoObject => write!(f, "no object"),
             Self::ToGo { left_m, speed_mps } => write!(f, "{left_m:.2} m to go at {speed_mps:.2} m/s"),
             Self::HeldShort { left_m } => write!(f, "held {left_m:.2} m short"),

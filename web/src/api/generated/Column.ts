@@ -62,6 +62,10 @@ arrival_secs: number | null,
  */
 planned_path_m: Array<[number, number]>, 
 /**
+ * The greatest speed of a jog as things are, m/s; null where the mode allows none.
+ */
+jog_speed_mps: number | null, 
+/**
  * Motor currents, A.
  */
 current_amps: [number, number], 

@@ -14,7 +14,7 @@ at_micros: number,
 at: string, 
 /**
  * Kind: `mode_changed`, `rule_breached`, `rule_cleared`, `request_accepted`, `request_refused`, `stop_pressed`,
- * `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
+ * `came_to_rest`, `jog_began`, `jog_ended`, `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
  * `scene_activated`, `prior_changed`, `client_connected`, `client_gone`, `client_error`.
  */
 kind: string, 

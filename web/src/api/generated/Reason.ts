@@ -277,7 +277,23 @@ other: string,
 /**
  * Its W.
  */
-other_weight: number, } | { "id": "no_object" } | { "id": "to_go", 
+other_weight: number, } | { "id": "person_inside", 
+/**
+ * Name.
+ */
+person: string, } | { "id": "arena_confirmed_clear" } | { "id": "jogs_while_held" } | { "id": "no_jog_order", 
+/**
+ * The machine's greatest speed, m/s.
+ */
+fastest_mps: number, } | { "id": "jog_outside_travel" } | { "id": "jog_let_go" } | { "id": "jog_silent" } | { "id": "jog_not_yet" } | { "id": "jog_over", 
+/**
+ * Which.
+ */
+mode: Mode, } | { "id": "jog_held_by", 
+/**
+ * Who, in their own words.
+ */
+author: string, } | { "id": "no_object" } | { "id": "to_go", 
 /**
  * Still to go, m.
  */

@@ -6,7 +6,7 @@ import type { Reason } from "./Reason";
  */
 export type RequestState = { 
 /**
- * `home`, `arm`, `disarm`, `stop` or `reset`.
+ * `home`, `arm`, `disarm`, `stop`, `reset` or `jog`.
  */
 request: string, 
 /**

@@ -25,6 +25,7 @@ export type { FromClient } from "./FromClient";
 export type { FromDashboard } from "./FromDashboard";
 export type { Hands } from "./Hands";
 export type { HeadPose } from "./HeadPose";
+export type { JogAim } from "./JogAim";
 export type { KeepOutDocument } from "./KeepOutDocument";
 export type { KeepOutShape } from "./KeepOutShape";
 export type { LinkThresholds } from "./LinkThresholds";

@@ -8,6 +8,7 @@ export const live = {
     released: "drive released",
     homing: "homing",
     ready: "ready, not armed",
+    jogged: "moved by hand",
     waiting: "waiting: nobody to serve",
     approaching: "approaching",
     yielding: "yielding",

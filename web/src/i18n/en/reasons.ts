@@ -121,6 +121,17 @@ export const reasons: ReasonSentences = {
   next_in_line: ({ object, weight }, { number, object: label }) => `next ${label(object)} ${number(weight, 2)}`,
   undecided: ({ person, object, weight, other, other_weight }, { number, object: label }) =>
     `${person === null ? "" : `for ${person}, `}undecided between ${label(object)} ${number(weight, 2)} and ${label(other)} ${number(other_weight, 2)}`,
+  person_inside: ({ person }) => `${person} is in the arena`,
+  arena_confirmed_clear: () => "the arena is clear, somebody looked",
+  jogs_while_held: () => "moves by hand while the button is held",
+  no_jog_order: ({ fastest_mps }, { number }) =>
+    `a jog needs a way or a place, and a speed above 0 and up to ${number(fastest_mps, 2)} m/s`,
+  jog_outside_travel: () => "that place is outside the travel",
+  jog_let_go: () => "let go",
+  jog_silent: () => "the button's word stayed away",
+  jog_not_yet: () => "not yet: a rule asked for a stop less than a second ago, or it is only just ready",
+  jog_over: ({ mode }, say) => `now ${say.mode(mode)}`,
+  jog_held_by: ({ author }) => `${author} moves the column now`,
   no_object: () => "no object",
   to_go: ({ left_m, speed_mps }, { number }) => `${number(left_m, 2)} m to go at ${number(speed_mps, 2)} m/s`,
   held_short: ({ left_m }, { number }) => `held ${number(left_m, 2)} m short`,

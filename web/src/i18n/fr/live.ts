@@ -8,6 +8,7 @@ export const live = {
     released: "entraînement libéré",
     homing: "prise d’origine",
     ready: "prête, non armée",
+    jogged: "déplacée à la main",
     waiting: "en attente : personne à servir",
     approaching: "en approche",
     yielding: "cède le passage",

@@ -121,6 +121,17 @@ export const reasons: ReasonSentences = {
   next_in_line: ({ object, weight }, { number, object: label }) => `ensuite ${label(object)} ${number(weight, 2)}`,
   undecided: ({ person, object, weight, other, other_weight }, { number, object: label }) =>
     `${person === null ? "" : `pour ${person}, `}hésite entre ${label(object)} ${number(weight, 2)} et ${label(other)} ${number(other_weight, 2)}`,
+  person_inside: ({ person }) => `${person} est dans l’arène`,
+  arena_confirmed_clear: () => "l’arène est vide, quelqu’un a regardé",
+  jogs_while_held: () => "se déplace à la main tant que le bouton est maintenu",
+  no_jog_order: ({ fastest_mps }, { number }) =>
+    `il faut une direction ou un endroit, et une vitesse positive d’au plus ${number(fastest_mps, 2)} m/s`,
+  jog_outside_travel: () => "cet endroit est hors de la course",
+  jog_let_go: () => "relâchée",
+  jog_silent: () => "le bouton ne s’est plus annoncé",
+  jog_not_yet: () => "pas encore : une règle a demandé un arrêt il y a moins d’une seconde, ou la machine vient d’être prête",
+  jog_over: ({ mode }, say) => `maintenant ${say.mode(mode)}`,
+  jog_held_by: ({ author }) => `${author} déplace la colonne en ce moment`,
   no_object: () => "aucun objet",
   to_go: ({ left_m, speed_mps }, { number }) => `encore ${number(left_m, 2)} m à ${number(speed_mps, 2)} m/s`,
   held_short: ({ left_m }, { number }) => `retenue à ${number(left_m, 2)} m du but`,

@@ -16,7 +16,8 @@ fn room_in(mode: Mode) -> Room {
         Mode::Homing => drop(room.ask(RequestKind::Home)),
         Mode::Ready => {
             room.ask(RequestKind::Home);
-            room.run(0.5);
+            // A jog is taken a second after it has become ready.
+            room.run(1.5);
         }
         Mode::ProtectiveStop => {
             room.engine.observe(room.now, Observation::OriginChanged(VISITOR));
