@@ -16,7 +16,7 @@ export interface OpenPage {
 /** A browser until the test ends. */
 export async function openBrowser(): Promise<Browser> {
   const browser = await chromium.launch({
-    executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
+    executablePath: join(import.meta.dirname, "browser"),
     args: [
       "--no-sandbox",
       "--disable-gpu",

@@ -1,0 +1,96 @@
+//! A machine on a bench: how time passes for it, and how its link and its power are cut.
+
+use covr_engine::frames::Floor;
+use covr_engine::machine::{Limits, Travel};
+use covr_engine::time::{Span, Time};
+use covr_gantry::contract::{Gantry, Simulated};
+use covr_gantry::ideal::IdealMachine;
+use covr_gantry::sim::SimulatedMachine;
+use covr_gantry::sim::faults::{Faults, LinkFault};
+use covr_gantry::sim::parameters::MachineParameters;
+
+/// One machine and its surroundings.
+pub trait Bench {
+    /// The machine.
+    fn gantry(&mut self) -> &mut dyn Gantry;
+
+    /// Its clock.
+    fn now(&self) -> Time;
+
+    /// Let so much time go by: virtual, or real.
+    fn pass(&mut self, span: Span);
+
+    /// Cut its link, or mend it; false where there is none to cut.
+    fn cut(&mut self, _cut: bool) -> bool {
+        false
+    }
+
+    /// Take its power away for a moment; false where that cannot be done.
+    fn interrupt_power(&mut self) -> bool {
+        false
+    }
+}
+
+/// A metre by a metre, so that homing is short.
+pub const TRAVEL: Travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(1.0, 1.0) };
+/// Where the column is parked.
+pub const PARKED: Floor = Floor::new(0.3, 0.2);
+
+/// The simulated machine on virtual time.
+pub struct SimulatedBench {
+    machine: SimulatedMachine,
+    now: Time,
+}
+
+impl SimulatedBench {
+    pub fn new() -> Self {
+        let parameters = MachineParameters { start: PARKED, ..MachineParameters::paper(TRAVEL) };
+        Self { machine: SimulatedMachine::new(parameters).unwrap(), now: Time::from_micros(1_000_000) }
+    }
+}
+
+impl Bench for SimulatedBench {
+    fn gantry(&mut self) -> &mut dyn Gantry {
+        &mut self.machine
+    }
+
+    fn now(&self) -> Time {
+        self.now
+    }
+
+    fn pass(&mut self, span: Span) {
+        self.now += span;
+    }
+
+    fn cut(&mut self, cut: bool) -> bool {
+        let link = if cut { LinkFault::Dead } else { LinkFault::None };
+        self.machine.set_faults(Faults { link, ..Faults::default() });
+        true
+    }
+}
+
+/// The ideal machine on virtual time.
+pub struct Ideal {
+    machine: IdealMachine,
+    now: Time,
+}
+
+impl Ideal {
+    pub fn new() -> Self {
+        Self { machine: IdealMachine::new(Limits::PAPER, TRAVEL, PARKED), now: Time::from_micros(1_000_000) }
+    }
+}
+
+impl Bench for Ideal {
+    fn gantry(&mut self) -> &mut dyn Gantry {
+        &mut self.machine
+    }
+
+    fn now(&self) -> Time {
+        self.now
+    }
+
+    fn pass(&mut self, span: Span) {
+        self.now += span;
+    }
+}
