@@ -2,6 +2,7 @@
 
 pub mod accepts;
 pub mod answers;
+pub mod calibration;
 pub mod client;
 pub mod clock;
 mod complaint;
