@@ -4,6 +4,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use covr_engine::mode::Mode;
+use covr_gantry::sim::SimulatedMachine;
+use covr_gantry::sim::parameters::MachineParameters;
 use covr_server::access::{Role, Token};
 use covr_server::app::App;
 use covr_server::config::Config;
@@ -58,6 +60,21 @@ impl TestServer {
         let mut config = test_config(&dir);
         change(&mut config);
         let server = Server::start(config).await.unwrap();
+        Self::run(dir, server)
+    }
+
+    /// The same, driving the simulated machine while it takes it for the one of the configuration.
+    pub async fn start_on_a_simulation(dir: TempDir, change: impl FnOnce(&mut Config)) -> Self {
+        let mut config = test_config(&dir);
+        change(&mut config);
+        let limits = config.machine.limits();
+        let parameters = MachineParameters { limits, ..MachineParameters::paper(config.machine.travel()) };
+        let machine = SimulatedMachine::new(parameters).unwrap();
+        let server = Server::start_with(config, Box::new(machine)).await.unwrap();
+        Self::run(dir, server)
+    }
+
+    fn run(dir: TempDir, server: Server) -> Self {
         let host = server.address().to_string();
         let app = server.app().clone();
         let (end, told) = oneshot::channel();

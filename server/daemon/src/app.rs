@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 use tokio::sync::{Semaphore, watch};
 
 use crate::access::{Caller, Change, Roster};
+use crate::calibrations::Calibrations;
 use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::config::{Config, Origins};
@@ -53,6 +54,8 @@ pub struct App {
     pub persons: Arc<Persons>,
     /// The active scene.
     pub stage: Arc<Stage>,
+    /// Where the clients' tracking spaces are.
+    pub calibrations: Calibrations,
     /// Connected VR clients.
     pub clients: Arc<Clients>,
     /// Places for VR clients that have not said who they are.
@@ -119,6 +122,16 @@ impl App {
     ) -> Result<Answer, NotDelivered> {
         let name = request_name(kind);
         let detail = json!({ "request": name, "reason": reason });
+        if kind == RequestKind::Arm
+            && let Some(why) = self.calibration_outdated()
+        {
+            let summary = format!("{name} by {asker}: refused: {why}");
+            let mut detail = asker.sign(detail);
+            detail["detail"] = why.to_string().into();
+            detail["why"] = json!(why);
+            self.recorder.record("request_refused", summary, detail);
+            return Err(NotDelivered::NotAsked(Box::new(why)));
+        }
         self.ask_recorded(asker, name, Request::Machine(kind, reason), detail).await
     }
 
@@ -149,6 +162,13 @@ impl App {
             self.record_answer(asker, "jog", &answer, json!({ "request": "jog" }));
         }
         Ok(answer)
+    }
+
+    /// Why the machine is not armed for the clients that are connected: a calibration was made on other hardware.
+    pub fn calibration_outdated(&self) -> Option<Reason> {
+        let now = self.calibrations.hardware(&self.control.published());
+        let clients = self.clients.list();
+        clients.iter().find_map(|client| self.calibrations.outdated(&client.name, &client.convention, &now))
     }
 
     /// The reason of an answer, with what the clients call the persons.

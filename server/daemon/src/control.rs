@@ -92,8 +92,11 @@ pub enum Ended {
 }
 
 /// Why a message did not get through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NotDelivered {
+    /// It was refused before the control thread was asked.
+    #[error("{0}")]
+    NotAsked(Box<Reason>),
     /// The queue is full.
     #[error("busy: the control loop's queue is full; try again")]
     Busy,
@@ -104,8 +107,9 @@ pub enum NotDelivered {
 
 impl NotDelivered {
     /// For whoever asked.
-    pub const fn reason(self) -> Reason {
+    pub fn reason(self) -> Reason {
         match self {
+            Self::NotAsked(why) => *why,
             Self::Busy => Reason::Busy,
             Self::NotRunning => Reason::ControlNotRunning,
         }

@@ -2,6 +2,7 @@
 
 mod access;
 mod asyncapi;
+mod calibrations;
 mod config;
 mod events;
 mod gate;
@@ -56,6 +57,7 @@ pub fn router(app: Arc<App>) -> Router {
                     .merge(priors::routes())
                     .merge(sessions::routes())
                     .merge(config::routes())
+                    .merge(calibrations::routes())
                     .merge(access::routes())
                     .merge(events::routes()),
             )

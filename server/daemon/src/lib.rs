@@ -8,6 +8,7 @@
 
 pub mod access;
 pub mod app;
+pub mod calibrations;
 pub mod cert_command;
 pub mod cli;
 pub mod clients;

@@ -31,6 +31,13 @@ fn with_path(app: &App, published: &Published, planned_path_m: Vec<[f64; 2]>) ->
         session_id: app.recorder.session_id(),
     };
     let mut snapshot = Snapshot::new(&published.snapshot, around);
+    if let Some(arm) =
+        snapshot.requests.iter_mut().find(|state| state.request == "arm" && state.why.is_none())
+        && let Some(why) = app.calibration_outdated()
+    {
+        arm.refused_because = Some(why.to_string());
+        arm.why = Some(why);
+    }
     snapshot.column.planned_path_m = planned_path_m;
     snapshot
 }

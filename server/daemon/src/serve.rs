@@ -25,6 +25,7 @@ use tokio::time::MissedTickBehavior;
 
 use crate::access::{Caller, Roster};
 use crate::app::{App, Asker};
+use crate::calibrations::Calibrations;
 use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::config::{Config, Loaded, MachineKind};
@@ -97,6 +98,7 @@ impl Server {
         let active = active_scene(&store, left_over.active_scene).await?;
         let priors = store.priors_in_force().await?;
 
+        let calibrations = Calibrations::open(&config, &store).await.context("calibrations")?;
         let persons = Arc::new(Persons::default());
         let clients = Arc::new(Clients::new(config.clients.most));
         let scene = active.scene.clone();
@@ -170,6 +172,7 @@ impl Server {
             recording,
             persons,
             stage,
+            calibrations,
             clients,
             doorstep: Arc::new(Semaphore::new(clients_most)),
             dashboard_seats: Arc::new(Semaphore::new(dashboards)),

@@ -1,8 +1,9 @@
-//! What outlives the process: scenes, sessions with their recordings, events, prior changes, tokens, and what the next start must know.
+//! What outlives the process: scenes, sessions with their recordings, events, prior changes, tokens, calibrations, and what the next start must know.
 //!
 //! SQLite in WAL mode with `synchronous=FULL`: what a method has returned survives kill -9 and loss of power.
 //! The control loop never comes here.
 
+mod calibrations;
 mod events;
 mod priors;
 mod recordings;
@@ -19,6 +20,7 @@ use sqlx::sqlite::{
     SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
 };
 
+pub use calibrations::NewCalibration;
 pub use events::{EventFilter, EventPage, NewEvent};
 pub use priors::PriorChange;
 pub use recordings::{Keep, NewChunk, StoredChunk};

@@ -216,7 +216,8 @@ pub struct Event {
     pub at: String,
     /// Kind: `mode_changed`, `rule_breached`, `rule_cleared`, `request_accepted`, `request_refused`, `stop_pressed`,
     /// `came_to_rest`, `jog_began`, `jog_ended`, `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
-    /// `scene_activated`, `prior_changed`, `client_connected`, `client_gone`, `client_error`.
+    /// `scene_activated`, `prior_changed`, `client_connected`, `client_gone`, `client_error`, `calibration_accepted`,
+    /// `calibration_refused`, `calibration_chosen`.
     pub kind: String,
     /// In plain words.
     pub summary: String,
@@ -227,7 +228,7 @@ pub struct Event {
 
 impl Event {
     /// Every kind.
-    pub const KINDS: [&'static str; 21] = [
+    pub const KINDS: [&'static str; 24] = [
         "mode_changed",
         "rule_breached",
         "rule_cleared",
@@ -249,6 +250,9 @@ impl Event {
         "client_connected",
         "client_gone",
         "client_error",
+        "calibration_accepted",
+        "calibration_refused",
+        "calibration_chosen",
     ];
 }
 

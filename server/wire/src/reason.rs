@@ -18,6 +18,7 @@ pub use latched::{last_run, latch_record};
 pub use trouble::MachineTrouble;
 pub(crate) use words::in_words;
 
+use crate::calibration::{CalibrationRefusal, HardwarePart};
 use crate::dashboard::Mode;
 
 /// A reason. Persons are named, objects and keep-out shapes have their ids; SI units.
@@ -199,6 +200,61 @@ pub enum Reason {
     ArenaAccountedFor,
     /// R16: it is not known whether somebody is inside.
     ArenaUnconfirmed,
+    /// Arm: a client's calibration is older than the hardware.
+    CalibrationOutdated {
+        /// The client.
+        client: String,
+        /// The version of its calibration in force.
+        #[ts(type = "number")]
+        version: i64,
+        /// What is another now.
+        part: HardwarePart,
+        /// What it was when the calibration was made.
+        was: String,
+        /// What it is now.
+        is: String,
+    },
+    /// Points that make no calibration.
+    BadCalibration {
+        /// Why.
+        refusal: CalibrationRefusal,
+    },
+    /// Calibrate: not while the machine is armed or finds its switches.
+    NotWhileItMoves,
+    /// Calibrate: none is in the making.
+    NoCalibrationDraft,
+    /// Calibrate: the one in the making has no such point.
+    NoCalibrationPoint {
+        /// As it was asked for.
+        point: String,
+    },
+    /// Calibrate: another point is being taken.
+    PointBeingTaken,
+    /// Calibrate: the client is not connected, or speaks for no one person.
+    ClientNotThere {
+        /// Its name.
+        client: String,
+    },
+    /// Calibrate: the client sends no such hand.
+    NoPointer {
+        /// Its name.
+        client: String,
+    },
+    /// Calibrate: the client has no calibration in force, which touching a prop needs.
+    ClientNotCalibrated {
+        /// Its name.
+        client: String,
+    },
+    /// Calibrate: the active scene has no such prop.
+    NoProp {
+        /// As it was named.
+        prop: String,
+    },
+    /// There is no calibration of this number.
+    NoCalibration {
+        /// As it was asked for.
+        calibration: String,
+    },
     /// Somebody asked for it.
     Asked {
         /// `home`, `arm`, `disarm`, `stop` or `reset`.

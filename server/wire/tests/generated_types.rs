@@ -7,6 +7,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use covr_wire::answers::{PriorChange, SceneSummary, SceneVersionSummary};
+use covr_wire::calibration::{
+    Calibration, CalibrationDraft, CalibrationRefusal, CalibrationSummary, NewCalibrationPoint,
+};
 use covr_wire::client::{ErrorCode, FromClient, ToClient};
 use covr_wire::dashboard::{Event, FromDashboard, ToDashboard};
 use covr_wire::reason::Reason;
@@ -41,6 +44,10 @@ fn generate() -> BTreeMap<String, String> {
     Session::export_all(&config).expect("sessions");
     SessionDetail::export_all(&config).expect("sessions");
     ConfigInForce::export_all(&config).expect("the configuration");
+    Calibration::export_all(&config).expect("calibrations");
+    CalibrationSummary::export_all(&config).expect("calibrations");
+    CalibrationDraft::export_all(&config).expect("calibrations");
+    NewCalibrationPoint::export_all(&config).expect("calibrations");
     SceneSummary::export_all(&config).expect("scenes");
     SceneVersionSummary::export_all(&config).expect("scenes");
     PriorChange::export_all(&config).expect("priors");
@@ -59,15 +66,18 @@ fn generate() -> BTreeMap<String, String> {
     files
 }
 
-/// What the page's catalogues must have a sentence for: every reason with its English one, the kinds of events, and the
-/// codes of what clients say wrong.
+/// What the page's catalogues must have a sentence for: every reason and refusal of a calibration with its English one, the
+/// kinds of events, and the codes of what clients say wrong.
 fn sentences() -> String {
     let reasons = Reason::examples().into_iter().map(|why| json!({ "text": why.to_string(), "reason": why }));
+    let refusals = CalibrationRefusal::examples().into_iter();
+    let refusals = refusals.map(|refusal| json!({ "text": refusal.to_string(), "refusal": refusal }));
     let codes = schemars::schema_for!(ErrorCode).to_value();
     let codes =
         codes["oneOf"].as_array().expect("one value for each code").iter().map(|code| code["const"].clone());
     let all = json!({
         "reasons": reasons.collect::<Vec<_>>(),
+        "calibration_refusals": refusals.collect::<Vec<_>>(),
         "event_kinds": Event::KINDS,
         "client_errors": codes.collect::<Vec<_>>(),
     });

@@ -3,8 +3,13 @@
  * deadline; a refusal is a `Problem` with the server's own words.
  */
 import type {
+  Calibration,
+  CalibrationDraft,
+  CalibrationSummary,
+  CalibrationTask,
   ConfigInForce,
   Me,
+  NewCalibrationPoint,
   PriorChange,
   PriorPreview,
   ProblemDocument,
@@ -188,6 +193,56 @@ export function exportAddress(id: number, format: "csv" | "json"): string {
 /** `GET /api/v1/events`, newest first. */
 export async function listEvents(limit: number): Promise<readonly WireEvent[]> {
   return (await call("GET", `/api/v1/events?limit=${limit}`)) as readonly WireEvent[];
+}
+
+/** `GET /api/v1/calibrations`, newest first. */
+export async function listCalibrations(): Promise<readonly CalibrationSummary[]> {
+  return (await call("GET", "/api/v1/calibrations")) as readonly CalibrationSummary[];
+}
+
+/** `GET /api/v1/calibrations/draft`; null while none is in the making. */
+export async function readCalibrationDraft(): Promise<CalibrationDraft | null> {
+  try {
+    return (await call("GET", "/api/v1/calibrations/draft")) as CalibrationDraft;
+  } catch (error) {
+    if (error instanceof Problem && error.why?.id === "no_calibration_draft") return null;
+    throw error;
+  }
+}
+
+/** `PUT /api/v1/calibrations/draft`. */
+export async function beginCalibration(task: CalibrationTask, author: string): Promise<CalibrationDraft> {
+  return (await call("PUT", "/api/v1/calibrations/draft", { text: JSON.stringify(task), author })) as CalibrationDraft;
+}
+
+/** `POST /api/v1/calibrations/draft/points`: measured for a second. */
+export async function takeCalibrationPoint(point: NewCalibrationPoint, author: string): Promise<CalibrationDraft> {
+  return (await call("POST", "/api/v1/calibrations/draft/points", { text: JSON.stringify(point), author })) as CalibrationDraft;
+}
+
+/** `DELETE /api/v1/calibrations/draft/points/{number}`. */
+export async function removeCalibrationPoint(number: number, author: string): Promise<CalibrationDraft> {
+  return (await call("DELETE", `/api/v1/calibrations/draft/points/${number}`, { text: "", author })) as CalibrationDraft;
+}
+
+/** `DELETE /api/v1/calibrations/draft`. */
+export async function discardCalibration(author: string): Promise<void> {
+  await call("DELETE", "/api/v1/calibrations/draft", { text: "", author });
+}
+
+/** `POST /api/v1/calibrations`: stores the one in the making and puts it in force. */
+export async function acceptCalibration(author: string): Promise<Calibration> {
+  return (await call("POST", "/api/v1/calibrations", { text: "", author })) as Calibration;
+}
+
+/** `PUT /api/v1/calibrations/{id}/activate` or `/retire`. */
+export async function chooseCalibration(id: number, inForce: boolean, author: string): Promise<void> {
+  await call("PUT", `/api/v1/calibrations/${id}/${inForce ? "activate" : "retire"}`, { text: "", author });
+}
+
+/** `POST /api/v1/calibrations/{id}/scene`: a prop's calibration as a new version of the active scene. */
+export async function writeCalibrationIntoScene(id: number, author: string): Promise<SceneStored> {
+  return (await call("POST", `/api/v1/calibrations/${id}/scene`, { text: "", author })) as SceneStored;
 }
 
 /** `GET /api/v1/config`. */

@@ -1,5 +1,5 @@
 /** What the catalogues of reasons must have: a sentence for each id that the server may send. */
-import type { Mode, Reason } from "../api/types";
+import type { CalibrationRefusal, Mode, Reason } from "../api/types";
 
 /** How the values of a reason read in the page's language. */
 export interface Sayings {
@@ -18,6 +18,21 @@ export interface Sayings {
 export type ReasonSentences = {
   readonly [Id in Reason["id"]]: (given: Extract<Reason, { readonly id: Id }>, say: Sayings) => string;
 };
+
+/** One sentence for each refusal of a calibration; a missing one does not compile. */
+export type RefusalSentences = {
+  readonly [Id in CalibrationRefusal["id"]]: (given: Extract<CalibrationRefusal, { readonly id: Id }>, number: Sayings["number"]) => string;
+};
+
+/** The sentence of a refusal. */
+export function refusalSentence(sentences: RefusalSentences, refusal: CalibrationRefusal, number: Sayings["number"]): string {
+  // The id picks the sentence that takes this very refusal; the compiler cannot tell.
+  return (sentences[refusal.id] as (given: CalibrationRefusal, number: Sayings["number"]) => string)(refusal, number);
+}
+
+/** Scales that a wrong unit gives: from a half to twice the ratio of the two. */
+export const CENTIMETRES_FOR_METRES = [0.005, 0.02] as const;
+export const METRES_FOR_CENTIMETRES = [50, 200] as const;
 
 /** Half a degree, which reads as 0°: somebody looks at what is nearer than this to their view axis, rad. */
 export const AT_RAD = Math.PI / 360;

@@ -1,7 +1,7 @@
 // @vitest-environment happy-dom
 import { afterEach, describe, expect, it } from "vitest";
 import SENTENCES from "../api/generated/sentences.json";
-import type { Reason } from "../api/types";
+import type { CalibrationRefusal, Reason } from "../api/types";
 import { useLanguage } from "../i18n";
 import * as en from "../i18n/en";
 import * as fr from "../i18n/fr";
@@ -35,6 +35,20 @@ describe("the catalogues of reasons", () => {
     // Numbers have a decimal comma; names and ids are as they came.
     const numbers = text.match(/\d+(?:\.\d+)?/g) ?? [];
     for (const number of numbers) expect(sentence.replaceAll(",", ".")).toContain(number);
+    expect(sentence).not.toMatch(/undefined|NaN|\[object/);
+  });
+});
+
+describe("the catalogues of refused calibrations", () => {
+  const REFUSED = SENTENCES.calibration_refusals as readonly { readonly refusal: CalibrationRefusal; readonly text: string }[];
+
+  it.each(REFUSED)("say $refusal.id in English as the server does, and in French with every value", ({ refusal, text }) => {
+    useLanguage("en");
+    expect(reasonWords({ id: "bad_calibration", refusal })).toBe(text);
+    useLanguage("fr");
+    const sentence = reasonWords({ id: "bad_calibration", refusal }) ?? "";
+    expect(sentence).not.toBe(text);
+    for (const number of text.match(/\d+(?:\.\d+)?/g) ?? []) expect(sentence.replaceAll(",", ".")).toContain(number);
     expect(sentence).not.toMatch(/undefined|NaN|\[object/);
   });
 });

@@ -103,6 +103,11 @@ function textOf(event: WireEvent, label: (object: string) => string): EventWords
       return of(text[event.kind], ["client"]);
     case "client_error":
       return of(text.client_error, ["client"], clientErrorOf(field("code"), field("message")));
+    case "calibration_accepted":
+    case "calibration_chosen":
+      return of(text[event.kind], ["author", "subject"]);
+    case "calibration_refused":
+      return of(text.calibration_refused, ["author", "subject"], why("detail"));
     default:
       return null;
   }

@@ -9,6 +9,9 @@ use axum::Router;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use covr_wire::answers::{PriorChange, SceneSummary, SceneVersionSummary};
+use covr_wire::calibration::{
+    Calibration, CalibrationDraft, CalibrationSummary, CalibrationTask, NewCalibrationPoint,
+};
 use covr_wire::dashboard::{Event, Snapshot};
 use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
 use covr_wire::scene::SceneDocument;
@@ -43,6 +46,7 @@ pub struct Document(Arc<str>);
         (name = "machine", description = "State, requests, the software stop"),
         (name = "scenes", description = "Scenes and their versions"),
         (name = "priors", description = "The game master's priors"),
+        (name = "calibrations", description = "Where clients and props are: measured, stored, in force"),
         (name = "record", description = "Sessions and events"),
         (name = "access", description = "Who am I, signing in and out, tickets and tokens"),
         (name = "config", description = "The configuration in force"),
@@ -87,6 +91,11 @@ fn add_wire_schemas(document: &mut Value) {
     generator.subschema_for::<RecordedFrames>();
     generator.subschema_for::<SessionDetail>();
     generator.subschema_for::<ConfigInForce>();
+    generator.subschema_for::<CalibrationTask>();
+    generator.subschema_for::<NewCalibrationPoint>();
+    generator.subschema_for::<CalibrationDraft>();
+    generator.subschema_for::<Calibration>();
+    let calibrations = generator.subschema_for::<Vec<CalibrationSummary>>();
     let sessions = generator.subschema_for::<Vec<Session>>();
     let events = generator.subschema_for::<Vec<Event>>();
     let scenes = generator.subschema_for::<Vec<SceneSummary>>();
@@ -96,6 +105,7 @@ fn add_wire_schemas(document: &mut Value) {
     for (name, schema) in generator.take_definitions(true) {
         schemas[name] = schema;
     }
+    schemas["CalibrationList"] = calibrations.to_value();
     schemas["EventList"] = events.to_value();
     schemas["SceneList"] = scenes.to_value();
     schemas["SceneVersionList"] = versions.to_value();

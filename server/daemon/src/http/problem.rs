@@ -161,7 +161,10 @@ impl From<NotLetIn> for Problem {
 
 impl From<NotDelivered> for Problem {
     fn from(error: NotDelivered) -> Self {
-        Self::unavailable(error.reason())
+        match error {
+            NotDelivered::NotAsked(why) => Self::refused(*why),
+            error => Self::unavailable(error.reason()),
+        }
     }
 }
 

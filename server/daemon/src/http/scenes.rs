@@ -193,7 +193,7 @@ fn record_stored(app: &App, asker: &Asker, id: i64, version: i64, name: &str) {
 }
 
 /// What is not JSON at all is malformed; what is JSON but no scene is invalid.
-fn refused(text: &[u8], errors: Vec<SceneError>) -> Problem {
+pub(super) fn refused(text: &[u8], errors: Vec<SceneError>) -> Problem {
     let is_json = serde_json::from_slice::<serde::de::IgnoredAny>(text).is_ok() || text.is_empty();
     let count = errors.len();
     let first = errors.first().map(ToString::to_string).unwrap_or_default();

@@ -12,7 +12,9 @@ use axum::extract::{ConnectInfo, Extension, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use covr_engine::time::{Span, Time};
-use covr_wire::client::{ActiveScene, ColumnNow, Encoding, Frame, Prediction, StopState, ToClient};
+use covr_wire::client::{
+    ActiveScene, ClientHello, ColumnNow, Encoding, Frame, Prediction, StopState, ToClient,
+};
 use covr_wire::convention::ClientFrame;
 use futures_util::StreamExt;
 use futures_util::stream::{SplitSink, SplitStream};
@@ -145,6 +147,8 @@ async fn write(
     let mut published = app.control.watch_published();
     let mut stage = app.stage.watch();
     let mut closing = app.closing.clone();
+    let mut rooms = app.calibrations.watch();
+    let mut hello: Option<Box<ClientHello>> = None;
     let mut frame: Option<ClientFrame> = None;
     let mut next_prediction = Time::ZERO;
     let mut last_stop: Option<StopState> = None;
@@ -154,8 +158,8 @@ async fn write(
             reply = replies.recv() => match reply {
                 None => return close(&mut sink, close_code::NORMAL, "").await,
                 Some(Reply::Say(message)) => say(&mut sink, encoding, &message).await?,
-                Some(Reply::Welcome(its_frame, welcome)) => {
-                    frame = Some(its_frame);
+                Some(Reply::Welcome(its_hello, its_frame, welcome)) => {
+                    (hello, frame) = (Some(its_hello), Some(its_frame));
                     stage.mark_unchanged();
                     say(&mut sink, encoding, &ToClient::Welcome(welcome)).await?;
                     published.mark_changed();
@@ -174,6 +178,14 @@ async fn write(
                 if let Some(frame) = &frame {
                     let scene = ActiveScene::new(active.id, active.version, active.document.clone(), frame);
                     say(&mut sink, encoding, &ToClient::Scene(Box::new(scene))).await?;
+                }
+            }
+            Ok(()) = rooms.changed() => {
+                let Some(hello) = &hello else { continue };
+                let anew = app.calibrations.frame(&hello.name, hello.convention);
+                if frame.replace(anew) != Some(anew) {
+                    // With the scene comes how to find it in the client's space.
+                    stage.mark_changed();
                 }
             }
             Ok(()) = published.changed(), if frame.is_some() => {

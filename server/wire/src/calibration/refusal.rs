@@ -109,6 +109,29 @@ pub enum CalibrationRefusal {
     },
 }
 
+impl CalibrationRefusal {
+    /// One of each, for the catalogues that must have them all.
+    pub fn examples() -> Vec<Self> {
+        vec![
+            Self::TooFewPoints { found: 4, fewest: 6 },
+            Self::TooManyPoints { found: 31, most: 30 },
+            Self::PointsTooClose { spread_m: 0.21, least_m: 0.5 },
+            Self::PointsOnALine { spread_m: 0.04, least_m: 0.25 },
+            Self::WrongScale { scale: 1.034, most_off: 0.01 },
+            Self::Mirrored,
+            Self::TooManyOutliers { outliers: 5, points: 12, most: 4 },
+            Self::PoorFit { rms_m: 0.0312, most_m: 0.015 },
+            Self::Tilted { tilt_rad: 0.0524, most_rad: 0.0349 },
+            Self::Uncertain { uncertainty_m: 0.0123, most_m: 0.01 },
+            Self::Moved { moved_m: 0.0214, most_m: 0.008 },
+            Self::TooFewPoses { found: 12, fewest: 30 },
+            Self::NotTracked,
+            Self::OffsetUnknown { found: 1, fewest: 3 },
+            Self::ColumnMoved { moved_m: 0.0041, most_m: 0.002 },
+        ]
+    }
+}
+
 impl fmt::Display for CalibrationRefusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -188,3 +211,20 @@ impl fmt::Display for CalibrationRefusal {
 }
 
 impl std::error::Error for CalibrationRefusal {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn there_is_an_example_of_each() {
+        let schema = schemars::schema_for!(CalibrationRefusal).to_value();
+        let known = schema["oneOf"].as_array().unwrap().iter();
+        let known: BTreeSet<_> = known.map(|one| one["properties"]["id"]["const"].to_string()).collect();
+        let shown = CalibrationRefusal::examples().into_iter();
+        let shown: Vec<_> = shown.map(|one| serde_json::to_value(one).unwrap()["id"].to_string()).collect();
+        assert_eq!(shown.len(), known.len());
+        assert_eq!(shown.into_iter().collect::<BTreeSet<_>>(), known);
+    }
+}

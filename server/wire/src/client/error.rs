@@ -56,6 +56,8 @@ pub enum ErrorCode {
     HelloExpected,
     /// A second hello.
     AlreadyGreeted,
+    /// The client's calibration was made on other hardware, and the machine is armed.
+    NotCalibrated,
     /// No word, or a wrong one.
     Unauthorized,
     /// A person who has not entered.

@@ -1,6 +1,7 @@
 //! One of each.
 
 use super::{MachineTrouble, Reason};
+use crate::calibration::{CalibrationRefusal, HardwarePart};
 use crate::dashboard::Mode;
 
 impl Reason {
@@ -56,6 +57,23 @@ impl Reason {
             Self::Intruder { input: "light curtain".into() },
             Self::ArenaAccountedFor,
             Self::ArenaUnconfirmed,
+            Self::CalibrationOutdated {
+                client: "headset 1".into(),
+                version: 3,
+                part: HardwarePart::Controller,
+                was: "/dev/roboclaw-00A1".into(),
+                is: "/dev/roboclaw-00B2".into(),
+            },
+            Self::BadCalibration { refusal: CalibrationRefusal::TooFewPoints { found: 4, fewest: 6 } },
+            Self::NotWhileItMoves,
+            Self::NoCalibrationDraft,
+            Self::NoCalibrationPoint { point: "7".into() },
+            Self::PointBeingTaken,
+            Self::ClientNotThere { client: "headset 1".into() },
+            Self::NoPointer { client: "headset 1".into() },
+            Self::ClientNotCalibrated { client: "headset 1".into() },
+            Self::NoProp { prop: "handle".into() },
+            Self::NoCalibration { calibration: "12".into() },
             Self::Asked { request: "arm".into() },
             Self::ResetAsked { said: "looked at the rail".into() },
             Self::HomingDone,

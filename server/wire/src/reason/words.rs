@@ -95,6 +95,31 @@ impl fmt::Display for Reason {
                 f,
                 "nobody is tracked and nobody has confirmed that the arena is clear: no motion by itself"
             ),
+            Self::CalibrationOutdated { client, version, part, was, is } => write!(
+                f,
+                "calibration {version} of {client} was made on other hardware: the {} was {was} and is {is}; calibrate anew",
+                part.in_words()
+            ),
+            Self::BadCalibration { refusal } => write!(f, "{refusal}"),
+            Self::NotWhileItMoves => {
+                write!(f, "not while the machine is armed or finds its switches: disarm first")
+            }
+            Self::NoCalibrationDraft => write!(f, "no calibration is in the making: begin one first"),
+            Self::NoCalibrationPoint { point } => {
+                write!(f, "the calibration in the making has no point {point}")
+            }
+            Self::PointBeingTaken => write!(f, "another point is being taken: wait for it"),
+            Self::ClientNotThere { client } => {
+                write!(f, "the client {client} is not connected with exactly one person")
+            }
+            Self::NoPointer { client } => {
+                write!(f, "the client {client} sends no position of that hand")
+            }
+            Self::ClientNotCalibrated { client } => {
+                write!(f, "the client {client} has no calibration in force: calibrate its room first")
+            }
+            Self::NoProp { prop } => write!(f, "the active scene has no prop {prop}"),
+            Self::NoCalibration { calibration } => write!(f, "there is no calibration {calibration}"),
             Self::Asked { request } => write!(f, "{request}"),
             Self::ResetAsked { said } => write!(f, "reset: {said}"),
             Self::HomingDone => write!(f, "homed"),

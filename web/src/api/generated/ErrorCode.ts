@@ -3,4 +3,4 @@
 /**
  * What kind of wrong.
  */
-export type ErrorCode = "frame_too_large" | "wrong_frame" | "malformed" | "unknown_message" | "unknown_field" | "missing_field" | "wrong_type" | "out_of_range" | "not_finite" | "not_unit" | "out_of_order" | "too_many_messages" | "hello_expected" | "already_greeted" | "unauthorized" | "unknown_person" | "already_entered" | "unknown_object" | "full";
+export type ErrorCode = "frame_too_large" | "wrong_frame" | "malformed" | "unknown_message" | "unknown_field" | "missing_field" | "wrong_type" | "out_of_range" | "not_finite" | "not_unit" | "out_of_order" | "too_many_messages" | "hello_expected" | "already_greeted" | "not_calibrated" | "unauthorized" | "unknown_person" | "already_entered" | "unknown_object" | "full";

@@ -1,7 +1,7 @@
 export { desk } from "./desk";
 export { live } from "./live";
 export { machine } from "./machine";
-export { reasons, troubles } from "./reasons";
+export { hardwareParts, reasons, refusals, troubles } from "./reasons";
 export { records } from "./records";
 export { settings } from "./settings";
 export { shell } from "./shell";

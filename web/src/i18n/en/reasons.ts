@@ -1,6 +1,6 @@
 /** Reasons: why a rule stands as it does, why the column does what it does, why a request was answered so. */
-import type { MachineTrouble } from "../../api/types";
-import { AT_RAD, type ReasonSentences } from "../reasons";
+import type { HardwarePart, MachineTrouble } from "../../api/types";
+import { AT_RAD, CENTIMETRES_FOR_METRES, METRES_FOR_CENTIMETRES, refusalSentence, type ReasonSentences, type RefusalSentences } from "../reasons";
 
 /** What keeps a machine from being driven. */
 export const troubles: Record<MachineTrouble, string> = {
@@ -14,6 +14,49 @@ export const troubles: Record<MachineTrouble, string> = {
   driver_fault: "a bridge of the motor controller is broken",
   too_hot: "the motor controller is too hot",
   bad_supply: "a supply of the motor controller is too high or too low",
+};
+
+/** What of the hardware a calibration hangs on. */
+export const hardwareParts: Record<HardwarePart, string> = {
+  machine: "machine",
+  travel: "travel",
+  controller: "motor controller",
+  firmware: "controller's firmware",
+  encoders: "encoders' counts a metre",
+  convention: "client's convention",
+};
+
+/** Why points make no calibration; the same sentences as the server's own. */
+export const refusals: RefusalSentences = {
+  too_few_points: ({ found, fewest }) => `${found} points are too few: at least ${fewest} are needed`,
+  too_many_points: ({ found, most }) => `${found} points are more than the ${most} that are taken`,
+  points_too_close: ({ spread_m, least_m }, number) =>
+    `the points are too close together: they spread ${number(spread_m, 2)} m, at least ${number(least_m, 2)} m is needed; use the whole arena`,
+  points_on_a_line: ({ spread_m, least_m }, number) =>
+    `the points lie nearly on one line: they spread ${number(spread_m, 2)} m across it, at least ${number(least_m, 2)} m is needed`,
+  wrong_scale: ({ scale, most_off }, number) => {
+    const is = `a metre of the headset is ${number(scale, 3)} m in the room; `;
+    if (scale >= CENTIMETRES_FOR_METRES[0] && scale < CENTIMETRES_FOR_METRES[1]) return `${is}the client seems to send centimetres under a convention of metres`;
+    if (scale >= METRES_FOR_CENTIMETRES[0] && scale < METRES_FOR_CENTIMETRES[1]) return `${is}the client seems to send metres under a convention of centimetres`;
+    return `${is}it may be off 1 by ${number(most_off * 100, 0)} % at most: the client's unit, or the places that were entered, are wrong`;
+  },
+  mirrored: () => "the points fit only in a mirror or upside down: the client declares a convention whose axes are not its own",
+  too_many_outliers: ({ outliers, points, most }) =>
+    `${outliers} of ${points} points disagree with the others, at most ${most} may: were places mixed up?`,
+  poor_fit: ({ rms_m, most_m }, number) =>
+    `the points are ${number(rms_m * 1e3, 1)} mm off on average, at most ${number(most_m * 1e3, 1)} mm is good enough: were places mixed up, or did the tracking jump?`,
+  tilted: ({ tilt_rad, most_rad }, number) =>
+    `the headset's upward axis is ${number(degrees(tilt_rad), 1)} degrees off the room's, at most ${number(degrees(most_rad), 1)} is believed: are the heights right?`,
+  uncertain: ({ uncertainty_m, most_m }, number) =>
+    `the result would be uncertain by ${number(uncertainty_m * 1e3, 1)} mm, at most ${number(most_m * 1e3, 1)} mm is good enough: take more points, further apart`,
+  moved: ({ moved_m, most_m }, number) =>
+    `it moved by ${number(moved_m * 1e3, 1)} mm while it was being measured, at most ${number(most_m * 1e3, 1)} mm is still: hold it still or put it down`,
+  too_few_poses: ({ found, fewest }) => `${found} poses came in that time, at least ${fewest} are needed: is the headset awake?`,
+  not_tracked: () => "the headset did not know its place all the time",
+  offset_unknown: ({ found, fewest }) =>
+    `where the headset sits on the column is not known: enter it, or touch at least ${fewest} places with the same headset (${found} so far)`,
+  column_moved: ({ moved_m, most_m }, number) =>
+    `the column moved by ${number(moved_m * 1e3, 1)} mm while the point was taken, at most ${number(most_m * 1e3, 1)} mm is at rest`,
 };
 
 /** By the id that the server sends; the same sentences as the server's own. */
@@ -67,6 +110,18 @@ export const reasons: ReasonSentences = {
   intruder: ({ input }) => `the input ${input} notices somebody whom nobody tracks`,
   arena_accounted_for: () => "people are tracked, or the arena was confirmed clear",
   arena_unconfirmed: () => "nobody is tracked and nobody has confirmed that the arena is clear: no motion by itself",
+  calibration_outdated: ({ client, version, part, was, is }) =>
+    `calibration ${version} of ${client} was made on other hardware: the ${hardwareParts[part]} was ${was} and is ${is}; calibrate anew`,
+  bad_calibration: ({ refusal }, { number }) => refusalSentence(refusals, refusal, number),
+  not_while_it_moves: () => "not while the machine is armed or finds its switches: disarm first",
+  no_calibration_draft: () => "no calibration is in the making: begin one first",
+  no_calibration_point: ({ point }) => `the calibration in the making has no point ${point}`,
+  point_being_taken: () => "another point is being taken: wait for it",
+  client_not_there: ({ client }) => `the client ${client} is not connected with exactly one person`,
+  no_pointer: ({ client }) => `the client ${client} sends no position of that hand`,
+  client_not_calibrated: ({ client }) => `the client ${client} has no calibration in force: calibrate its room first`,
+  no_prop: ({ prop }) => `the active scene has no prop ${prop}`,
+  no_calibration: ({ calibration }) => `there is no calibration ${calibration}`,
   asked: ({ request }, say) => say.request(request),
   reset_asked: ({ said }) => `reset: ${said}`,
   homing_done: () => "homed",
@@ -156,3 +211,7 @@ export const reasons: ReasonSentences = {
   memory_locked_for_now: () => "present memory locked, future memory not (RLIMIT_MEMLOCK is limited)",
   memory_not_locked: ({ said }) => `memory not locked (${said})`,
 };
+
+function degrees(rad: number): number {
+  return (rad * 180) / Math.PI;
+}

@@ -223,6 +223,9 @@ export const records = {
       client_connected: "client",
       client_gone: "client gone",
       client_error: "client error",
+      calibration_accepted: "calibrated",
+      calibration_refused: "calibration refused",
+      calibration_chosen: "calibration chosen",
     } as Readonly<Record<string, string>>,
   },
 };

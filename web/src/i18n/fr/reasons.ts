@@ -1,6 +1,6 @@
 /** Motifs : pourquoi une règle est dans cet état, pourquoi la colonne fait ce qu’elle fait, pourquoi une demande a reçu cette réponse. */
-import type { MachineTrouble } from "../../api/types";
-import { AT_RAD, type ReasonSentences } from "../reasons";
+import type { HardwarePart, MachineTrouble } from "../../api/types";
+import { AT_RAD, CENTIMETRES_FOR_METRES, METRES_FOR_CENTIMETRES, refusalSentence, type ReasonSentences, type RefusalSentences } from "../reasons";
 
 /** Ce qui empêche de piloter la machine. */
 export const troubles: Record<MachineTrouble, string> = {
@@ -17,6 +17,49 @@ export const troubles: Record<MachineTrouble, string> = {
 };
 
 /** Selon l’identifiant envoyé par le serveur. */
+/** Ce dont dépend un calibrage. */
+export const hardwareParts: Record<HardwarePart, string> = {
+  machine: "machine",
+  travel: "course",
+  controller: "contrôleur de moteurs",
+  firmware: "micrologiciel du contrôleur",
+  encoders: "nombre d’impulsions par mètre",
+  convention: "convention du client",
+};
+
+/** Why points make no calibration. */
+export const refusals: RefusalSentences = {
+  too_few_points: ({ found, fewest }) => `${found} points, c’est trop peu : il en faut au moins ${fewest}`,
+  too_many_points: ({ found, most }) => `${found} points, c’est plus que les ${most} acceptés`,
+  points_too_close: ({ spread_m, least_m }, number) =>
+    `les points sont trop proches : ils s’étalent sur ${number(spread_m, 2)} m, il faut au moins ${number(least_m, 2)} m ; utilisez toute l’arène`,
+  points_on_a_line: ({ spread_m, least_m }, number) =>
+    `les points sont presque alignés : ils s’en écartent de ${number(spread_m, 2)} m, il faut au moins ${number(least_m, 2)} m`,
+  wrong_scale: ({ scale, most_off }, number) => {
+    const is = `un mètre du casque vaut ${number(scale, 3)} m dans la salle ; `;
+    if (scale >= CENTIMETRES_FOR_METRES[0] && scale < CENTIMETRES_FOR_METRES[1]) return `${is}le client semble envoyer des centimètres sous une convention en mètres`;
+    if (scale >= METRES_FOR_CENTIMETRES[0] && scale < METRES_FOR_CENTIMETRES[1]) return `${is}le client semble envoyer des mètres sous une convention en centimètres`;
+    return `${is}l’écart à 1 est d’au plus ${number(most_off * 100, 0)} % : l’unité du client ou les lieux saisis sont faux`;
+  },
+  mirrored: () => "les points ne concordent qu’en miroir ou à l’envers : le client déclare une convention dont les axes ne sont pas les siens",
+  too_many_outliers: ({ outliers, points, most }) =>
+    `${outliers} points sur ${points} contredisent les autres, au plus ${most} sont admis : des lieux ont-ils été confondus ?`,
+  poor_fit: ({ rms_m, most_m }, number) =>
+    `les points s’écartent de ${number(rms_m * 1e3, 1)} mm en moyenne, il faut au plus ${number(most_m * 1e3, 1)} mm : des lieux ont-ils été confondus, ou le suivi a-t-il sauté ?`,
+  tilted: ({ tilt_rad, most_rad }, number) =>
+    `la verticale du casque s’écarte de celle de la salle de ${number(degrees(tilt_rad), 1)} degrés, au plus ${number(degrees(most_rad), 1)} sont admis : les hauteurs sont-elles justes ?`,
+  uncertain: ({ uncertainty_m, most_m }, number) =>
+    `le résultat serait incertain de ${number(uncertainty_m * 1e3, 1)} mm, il faut au plus ${number(most_m * 1e3, 1)} mm : prenez plus de points, plus éloignés`,
+  moved: ({ moved_m, most_m }, number) =>
+    `il a bougé de ${number(moved_m * 1e3, 1)} mm pendant la mesure, au plus ${number(most_m * 1e3, 1)} mm sont admis : tenez-le immobile ou posez-le`,
+  too_few_poses: ({ found, fewest }) => `${found} poses reçues pendant ce temps, il en faut au moins ${fewest} : le casque est-il éveillé ?`,
+  not_tracked: () => "le casque n’a pas connu sa position tout du long",
+  offset_unknown: ({ found, fewest }) =>
+    `on ne sait pas où le casque est posé sur la colonne : saisissez-le, ou touchez au moins ${fewest} lieux avec le même casque (${found} jusqu’ici)`,
+  column_moved: ({ moved_m, most_m }, number) =>
+    `la colonne a bougé de ${number(moved_m * 1e3, 1)} mm pendant la mesure, au plus ${number(most_m * 1e3, 1)} mm sont admis`,
+};
+
 export const reasons: ReasonSentences = {
   nothing_to_watch: () => "rien à surveiller pour l’instant",
   not_watched: () => "pas surveillée dans cette version",
@@ -67,6 +110,18 @@ export const reasons: ReasonSentences = {
   intruder: ({ input }) => `l’entrée ${input} signale quelqu’un que personne ne suit`,
   arena_accounted_for: () => "les personnes sont suivies, ou l’arène a été confirmée vide",
   arena_unconfirmed: () => "personne n’est suivi et personne n’a confirmé que l’arène est vide : aucun mouvement spontané",
+  calibration_outdated: ({ client, version, part, was, is }) =>
+    `le calibrage ${version} de ${client} a été fait sur un autre matériel (${hardwareParts[part]} : ${was} alors, ${is} maintenant) ; refaites-le`,
+  bad_calibration: ({ refusal }, { number }) => refusalSentence(refusals, refusal, number),
+  not_while_it_moves: () => "pas tant que la machine est armée ou prend son origine : désarmez d’abord",
+  no_calibration_draft: () => "aucun calibrage n’est en cours : commencez-en un",
+  no_calibration_point: ({ point }) => `le calibrage en cours n’a pas de point ${point}`,
+  point_being_taken: () => "un autre point est en cours de mesure : attendez",
+  client_not_there: ({ client }) => `le client ${client} n’est pas connecté avec exactement une personne`,
+  no_pointer: ({ client }) => `le client ${client} n’envoie pas la position de cette main`,
+  client_not_calibrated: ({ client }) => `le client ${client} n’a pas de calibrage en vigueur : calibrez d’abord sa salle`,
+  no_prop: ({ prop }) => `la scène active n’a pas d’accessoire ${prop}`,
+  no_calibration: ({ calibration }) => `il n’y a pas de calibrage ${calibration}`,
   asked: ({ request }, say) => say.request(request),
   reset_asked: ({ said }) => `réinitialisation : ${said}`,
   homing_done: () => "origine prise",
@@ -156,3 +211,7 @@ export const reasons: ReasonSentences = {
   memory_locked_for_now: () => "mémoire présente verrouillée, à venir non (RLIMIT_MEMLOCK est limité)",
   memory_not_locked: ({ said }) => `mémoire non verrouillée (${said})`,
 };
+
+function degrees(rad: number): number {
+  return (rad * 180) / Math.PI;
+}

@@ -223,6 +223,9 @@ export const records = {
       client_connected: "client",
       client_gone: "client parti",
       client_error: "erreur du client",
+      calibration_accepted: "calibré",
+      calibration_refused: "calibrage refusé",
+      calibration_chosen: "calibrage choisi",
     } as Readonly<Record<string, string>>,
   },
 };

@@ -1,6 +1,12 @@
 //! One value of every body, by the name of its schema.
 
 use covr_wire::answers::{PriorChange, SceneSummary, SceneVersionSummary};
+use covr_wire::calibration::{
+    Calibration, CalibrationDraft, CalibrationKind, CalibrationPoint, CalibrationRefusal, CalibrationResult,
+    CalibrationSummary, CalibrationTask, Hardware, HardwareChange, HardwarePart, NewCalibrationPoint,
+    PointOn, Pointer,
+};
+use covr_wire::client::Convention;
 use covr_wire::examples;
 use covr_wire::records::{RecordedFrame, SceneInForce, Session, SessionDetail};
 use serde::Serialize;
@@ -32,6 +38,24 @@ pub fn of(schema: &str) -> Option<Value> {
             active: true,
             objects: 12,
         }),
+        "CalibrationTask" => value(calibration_task()),
+        "NewCalibrationPoint" => {
+            value(NewCalibrationPoint { on: PointOn::Place, place_m: Some([1.0, 0.5, 0.0]) })
+        }
+        "CalibrationDraft" => value(CalibrationDraft {
+            task: calibration_task(),
+            author: "Ada".into(),
+            points: vec![CalibrationPoint {
+                residual_m: None,
+                used: None,
+                ..calibration().points[0].clone()
+            }],
+            result: None,
+            refused_because: Some(FEW_POINTS.to_string()),
+            why: Some(FEW_POINTS),
+        }),
+        "Calibration" => value(calibration()),
+        "CalibrationSummary" => value(calibration().summary),
         "SceneStored" => value(SceneStored { id: 4, version: 1 }),
         "SceneChecked" => value(SceneChecked { valid: true, name: "Kitchen".into(), objects: 12 }),
         "SceneActivated" => value(SceneActivated { id: 4, version: 2, detail: "the scene is active".into() }),
@@ -70,6 +94,64 @@ pub fn of(schema: &str) -> Option<Value> {
         "Readiness" => value(Readiness { ready: true, control_loop: "ready".into(), store: "ready".into() }),
         _ => None,
     }
+}
+
+fn calibration_task() -> CalibrationTask {
+    CalibrationTask {
+        kind: CalibrationKind::RoomFromTracking,
+        client: "headset 1".into(),
+        pointer: Pointer::RightHand,
+        offset_m: None,
+        prop: None,
+    }
+}
+
+fn calibration() -> Calibration {
+    let summary = CalibrationSummary {
+        id: 12,
+        kind: CalibrationKind::RoomFromTracking,
+        subject: "headset 1".into(),
+        version: 3,
+        author: "Ada".into(),
+        created_at: AT.into(),
+        in_force: true,
+        points_used: 11,
+        points_left_out: 1,
+        result: CalibrationResult::RoomFromTracking {
+            convention: Convention::Openxr,
+            position_m: [2.01, 1.48, 0.002],
+            orientation: [0.0, 0.0, 0.38, 0.925],
+            rms_m: 0.0031,
+            scale: 0.9993,
+            tilt_rad: 0.004,
+            uncertainty_m: 0.0027,
+            turn_sd_rad: 0.0006,
+            offset_m: None,
+        },
+        changed: vec![HardwareChange {
+            part: HardwarePart::Controller,
+            was: "/dev/roboclaw-00A1".into(),
+            is: "/dev/roboclaw-00B2".into(),
+        }],
+    };
+    let point = CalibrationPoint {
+        number: 1,
+        on: PointOn::Place,
+        tracking_m: [-0.71, 0.69, 0.003],
+        room_m: [1.0, 0.5, 0.0],
+        poses: 90,
+        jitter_m: 0.0006,
+        residual_m: Some(0.0028),
+        used: Some(true),
+    };
+    let hardware = Hardware {
+        machine: "roboclaw".into(),
+        travel_m: [[0.0, 0.0], [4.0, 4.0]],
+        controller: Some("/dev/roboclaw-00A1".into()),
+        firmware: Some("USB Roboclaw 2x15a v4.3.6".into()),
+        counts_per_metre: Some([20_000.0, 20_000.0]),
+    };
+    Calibration { summary, points: vec![point], hardware }
 }
 
 /// One thing that is wrong.
@@ -124,4 +206,5 @@ fn value(sample: impl Serialize) -> Option<Value> {
     serde_json::to_value(sample).ok()
 }
 
+const FEW_POINTS: CalibrationRefusal = CalibrationRefusal::TooFewPoints { found: 1, fewest: 6 };
 const AT: &str = "2026-11-24T10:15:07.250000Z";

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::net::IpAddr;
 use std::sync::Arc;
 
-use covr_engine::frames::RigidMap;
+use covr_engine::mode::Mode;
 use covr_engine::observation::{Observation, PersonId, PoseSample};
 use covr_engine::safety::parameters::Parameters;
 use covr_engine::time::{Span, Time};
@@ -19,11 +19,12 @@ use covr_wire::convention::ClientFrame;
 use covr_wire::dashboard::Client;
 use covr_wire::link::{Link, LinkFigures};
 use serde_json::json;
-use tokio::sync::OwnedSemaphorePermit;
+use tokio::sync::{OwnedSemaphorePermit, watch};
 
 use crate::access::table::client_key;
 use crate::access::{Caller, Holder, Standing};
 use crate::app::App;
+use crate::calibrations::Rooms;
 use crate::clients::Seat;
 use crate::control::PoseSlot;
 use crate::http::{Problem, address};
@@ -37,7 +38,7 @@ pub enum Reply {
     /// A message.
     Say(ToClient),
     /// The answer to its hello, and how to speak to it from now on.
-    Welcome(ClientFrame, Box<Welcome>),
+    Welcome(Box<ClientHello>, ClientFrame, Box<Welcome>),
     /// Why the connection is closed.
     LastWords(ClientError),
 }
@@ -79,6 +80,7 @@ pub struct Guest {
     pose_times: VecDeque<Time>,
     meters: ClientMeters,
     next_show: Time,
+    rooms: watch::Receiver<Arc<Rooms>>,
 }
 
 /// Who it is.
@@ -99,6 +101,7 @@ impl Guest {
     /// A client that has said nothing yet.
     pub fn new(app: Arc<App>, encoding: Encoding, who: Newcomer) -> Self {
         let gauge = AbuseGauge::new(app.config.clients.persons_each);
+        let rooms = app.calibrations.watch();
         Self {
             app,
             encoding,
@@ -112,6 +115,7 @@ impl Guest {
             pose_times: VecDeque::new(),
             meters: ClientMeters::default(),
             next_show: Time::ZERO,
+            rooms,
         }
     }
 
@@ -228,10 +232,8 @@ impl Guest {
             })?;
             self.who.place = Place::Seat(seat);
         }
-        let settings = &self.app.config.clients;
-        let room_from_tracking =
-            RigidMap::from_yaw(settings.tracking_yaw_rad, settings.tracking_origin_m.into());
-        let frame = ClientFrame::new(hello.convention, room_from_tracking);
+        self.rooms.mark_unchanged();
+        let frame = self.app.calibrations.frame(&hello.name, hello.convention);
         let active = self.app.stage.active();
         let rules = Parameters::new(self.app.config.people.v_h_mps);
         let welcome = Welcome {
@@ -244,9 +246,9 @@ impl Guest {
         tracing::info!(client = hello.name, convention = hello.convention.name(), "VR client connected");
         let detail = json!({ "client": hello.name, "convention": hello.convention.name() });
         self.record("client_connected", format!("client {} connected", hello.name), detail);
-        self.greeted = Some(Greeted { hello, frame });
+        self.greeted = Some(Greeted { hello: hello.clone(), frame });
         self.show(received);
-        Ok(Reply::Welcome(frame, Box::new(welcome)))
+        Ok(Reply::Welcome(Box::new(hello), frame, Box::new(welcome)))
     }
 
     /// Who it is, by the token in its hello.
@@ -270,6 +272,14 @@ impl Guest {
         if self.persons.contains_key(person) {
             let words = format!("{person} has entered already");
             return Err(ClientError::plain(ErrorCode::AlreadyEntered, words));
+        }
+        let published = self.app.control.published();
+        if matches!(published.snapshot.mode, Mode::Following | Mode::ProtectiveStop) {
+            let now = self.app.calibrations.hardware(&published);
+            let (name, convention) = (&greeted.hello.name, greeted.hello.convention.name());
+            if let Some(why) = self.app.calibrations.outdated(name, convention, &now) {
+                return Err(ClientError::plain(ErrorCode::NotCalibrated, why.to_string()));
+            }
         }
         let most = self.app.config.clients.persons_each;
         if self.persons.len() >= most {
@@ -300,12 +310,17 @@ impl Guest {
     }
 
     fn pose(&mut self, pose: &HeadPose, received: Time) -> Result<(), ClientError> {
-        let Some(greeted) = &self.greeted else { return Ok(()) };
+        let Some(greeted) = &mut self.greeted else { return Ok(()) };
+        if self.rooms.has_changed().unwrap_or(false) {
+            self.rooms.mark_unchanged();
+            greeted.frame = self.app.calibrations.frame(&greeted.hello.name, greeted.hello.convention);
+        }
         let present = self.persons.get_mut(&pose.person).ok_or_else(|| unknown_person(&pose.person))?;
         present.sequencer.accept(pose.sequence).map_err(|wrong| {
             let expected = format!("more than {}", wrong.last);
             ClientError::at(ErrorCode::OutOfOrder, "sequence", wrong.found.to_string(), expected)
         })?;
+        self.app.calibrations.bench.hear(&greeted.hello.name, greeted.hello.convention, pose);
         let taken_at = self.clock.server_time(pose.client_time_micros, received);
         present.slot.put(PoseSample {
             taken_at,
