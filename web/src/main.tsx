@@ -15,6 +15,7 @@ import "./style/scenes.css";
 import "./style/sessions.css";
 import "./style/settings.css";
 import "./style/jog.css";
+import "./style/calibration.css";
 
 const root = document.getElementById("root");
 if (root === null) throw new Error("the page has no root");

@@ -93,7 +93,7 @@ export function App(): JSX.Element {
             <SessionsView live={live} />
           </Match>
           <Match when={route().view === "machine"}>
-            <MachineView live={live} />
+            <MachineView live={live} author={author()} />
           </Match>
           <Match when={route().view === "settings"}>
             <SettingsView

@@ -1,15 +1,16 @@
-/** The machine: its axes, its boards and the link to them, and how it is configured. */
+/** The machine: its axes, its boards and the link to them, its calibration, and how it is configured. */
 import { For, Show, type JSX } from "solid-js";
 import type { Column, MachineHealth, MachineShape } from "../api/types";
 import { words } from "../i18n";
 import { decimal, metres } from "../lib/format";
 import type { Live } from "../live/live";
+import { Calibration } from "../ui/calibration/Calibration";
 import { Configuration } from "../ui/Configuration";
 import { Jog } from "../ui/Jog";
 import { Said } from "../ui/Said";
 
 /** The view. */
-export function MachineView(props: { readonly live: Live }): JSX.Element {
+export function MachineView(props: { readonly live: Live; readonly author: string }): JSX.Element {
   return (
     <div class="sheet">
       <h1>{words().machine.title}</h1>
@@ -38,6 +39,7 @@ export function MachineView(props: { readonly live: Live }): JSX.Element {
           </>
         )}
       </Show>
+      <Calibration live={props.live} author={props.author} />
       <Configuration search="machine." />
     </div>
   );
