@@ -11,6 +11,7 @@ use crate::emulate::EmulateCommand;
 use crate::evaluate::Evaluate;
 use crate::explain::Explain;
 use crate::fit::Fit;
+use crate::identify::Identify;
 use crate::prove::Prove;
 use crate::token_command::TokenCommand;
 
@@ -41,6 +42,8 @@ pub enum Command {
     Explain(Box<Explain>),
     /// Fit the parameters of an intention rule to recorded people, and judge them on people left out.
     Fit(Fit),
+    /// Work out an axis's inertia, friction, limits and delays from a recorded run of it.
+    Identify(Identify),
     /// Try to have the machine break the separation rule in random worlds; exit code 1 if it ever does.
     Prove(Prove),
     /// Make, list and take back the tokens that people and programs sign in with.

@@ -21,6 +21,7 @@ pub mod explain;
 pub mod fit;
 pub mod hand;
 pub mod http;
+pub mod identify;
 pub mod inputs;
 pub mod listen;
 pub mod live;

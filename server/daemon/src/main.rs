@@ -11,7 +11,9 @@ use covr_server::config::{self, Config};
 use covr_server::prove::Prove;
 use covr_server::serve::{Server, stop_at_signal, stop_signal, told_by_signal};
 use covr_server::visitor::credentials::Credentials;
-use covr_server::{cert_command, emulate, evaluate, explain, fit, logs, prove, token_command, visitor};
+use covr_server::{
+    cert_command, emulate, evaluate, explain, fit, identify, logs, prove, token_command, visitor,
+};
 use covr_wire::scene::parse_scene;
 
 fn main() -> ExitCode {
@@ -23,6 +25,7 @@ fn main() -> ExitCode {
         Command::Evaluate(options) => evaluate::run(&options).and_then(|table| print(&table)),
         Command::Explain(options) => explain::run(&options).and_then(|words| print(&words)),
         Command::Fit(options) => fit::run(&options).and_then(|report| print(&report)),
+        Command::Identify(options) => identify::run(&options).and_then(|words| print(&words)),
         Command::Prove(options) => return attempt(&options),
         Command::Token(options) => runtime()
             .and_then(|runtime| runtime.block_on(token_command::run(options)))
