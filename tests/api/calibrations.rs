@@ -268,6 +268,8 @@ async fn another_is_put_in_force_and_out_of_it_but_not_while_armed() {
 async fn a_real_machine_is_not_armed_on_a_calibration_of_other_hardware() {
     let server = TestServer::start_on_a_simulation(TempDir::new().unwrap(), |config| {
         config.machine.kind = MachineKind::RoboClaw;
+        // That it was not commissioned is another test's.
+        config.machine.roboclaw.emulated = true;
         config.safety.game_master = GameMasterNeeded::Never;
     })
     .await;
@@ -297,7 +299,7 @@ async fn a_real_machine_is_not_armed_on_a_calibration_of_other_hardware() {
     assert!(events.contains("calibration_outdated"), "{events}");
     // Calibrated anew, it is no longer what keeps it from being armed.
     server.app.calibrations.accept(&server.app.store, &room(now, ORIGIN_M)).await.unwrap();
-    assert_eq!(server.app.calibration_outdated(), None);
+    assert_eq!(server.app.why_not_armed(), None);
 }
 
 #[tokio::test]

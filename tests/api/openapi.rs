@@ -213,6 +213,8 @@ async fn every_route_is_documented() {
         "POST /api/v1/persons/{id}/confirm",
         "POST /api/v1/persons/{id}/left",
         "POST /api/v1/arena/clear",
+        "GET /api/v1/commissionings",
+        "POST /api/v1/commissionings",
         "GET /api/v1/scenes",
         "POST /api/v1/scenes",
         "POST /api/v1/scenes/check",

@@ -17,6 +17,7 @@ use crate::access::{Caller, Change, Roster};
 use crate::calibrations::Calibrations;
 use crate::clients::Clients;
 use crate::clock::Clock;
+use crate::commissionings::Commissionings;
 use crate::config::{Config, Origins};
 use crate::control::{Control, NotDelivered, NotReached, StopLaneName};
 use crate::hand::{Hand, Ordered};
@@ -44,6 +45,8 @@ pub struct App {
     pub limits: Limits,
     /// The database.
     pub store: Store,
+    /// The commissioning that counts.
+    pub commissionings: Commissionings,
     /// Whose hand jogs the column.
     pub hand: Hand,
     /// The recorder.
@@ -123,7 +126,7 @@ impl App {
         let name = request_name(kind);
         let detail = json!({ "request": name, "reason": reason });
         if kind == RequestKind::Arm
-            && let Some(why) = self.calibration_outdated()
+            && let Some(why) = self.why_not_armed()
         {
             let summary = format!("{name} by {asker}: refused: {why}");
             let mut detail = asker.sign(detail);
@@ -164,9 +167,12 @@ impl App {
         Ok(answer)
     }
 
-    /// Why the machine is not armed for the clients that are connected: a calibration was made on other hardware.
-    pub fn calibration_outdated(&self) -> Option<Reason> {
+    /// Why a real machine is not armed: it was not commissioned as it is, or a connected client was calibrated on other hardware.
+    pub fn why_not_armed(&self) -> Option<Reason> {
         let now = self.calibrations.hardware(&self.control.published());
+        if let Some(why) = self.commissionings.why_not_armed(&now) {
+            return Some(why);
+        }
         let clients = self.clients.list();
         clients.iter().find_map(|client| self.calibrations.outdated(&client.name, &client.convention, &now))
     }

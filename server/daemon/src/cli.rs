@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use crate::cert_command::CertCommand;
+use crate::commission::Commission;
 use crate::config::LogFormat;
 use crate::emulate::EmulateCommand;
 use crate::evaluate::Evaluate;
@@ -36,6 +37,8 @@ pub enum Command {
     Check(Check),
     /// Play a person as a VR client: recorded with --trace, else made up.
     Visitor(Visitor),
+    /// Walk through the first motion of a machine on a running server: the wired stop, directions, the software stop, the brake.
+    Commission(Commission),
     /// Replay recorded people on virtual time and say how often the column was there before the hand.
     Evaluate(Box<Evaluate>),
     /// Say in words what happened in one recorded reach, and draw it.

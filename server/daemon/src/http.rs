@@ -3,6 +3,7 @@
 mod access;
 mod asyncapi;
 mod calibrations;
+mod commissionings;
 mod config;
 mod events;
 mod gate;
@@ -58,6 +59,7 @@ pub fn router(app: Arc<App>) -> Router {
                     .merge(sessions::routes())
                     .merge(config::routes())
                     .merge(calibrations::routes())
+                    .merge(commissionings::routes())
                     .merge(access::routes())
                     .merge(events::routes()),
             )

@@ -13,6 +13,8 @@ pub mod cert_command;
 pub mod cli;
 pub mod clients;
 pub mod clock;
+pub mod commission;
+pub mod commissionings;
 pub mod config;
 pub mod control;
 pub mod emulate;

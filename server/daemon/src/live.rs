@@ -33,7 +33,7 @@ fn with_path(app: &App, published: &Published, planned_path_m: Vec<[f64; 2]>) ->
     let mut snapshot = Snapshot::new(&published.snapshot, around);
     if let Some(arm) =
         snapshot.requests.iter_mut().find(|state| state.request == "arm" && state.why.is_none())
-        && let Some(why) = app.calibration_outdated()
+        && let Some(why) = app.why_not_armed()
     {
         arm.refused_because = Some(why.to_string());
         arm.why = Some(why);

@@ -7,6 +7,7 @@ use std::time::Duration;
 use anyhow::Context;
 use clap::Parser;
 use covr_server::cli::{Check, Cli, Command, Health, Serve, Visitor};
+use covr_server::commission::{self, Commission};
 use covr_server::config::{self, Config};
 use covr_server::prove::Prove;
 use covr_server::serve::{Server, stop_at_signal, stop_signal, told_by_signal};
@@ -22,6 +23,7 @@ fn main() -> ExitCode {
         Command::Serve(options) => serve(options),
         Command::Check(options) => return check(&options),
         Command::Visitor(options) => visit(options),
+        Command::Commission(options) => first_motion(&options),
         Command::Evaluate(options) => evaluate::run(&options).and_then(|table| print(&table)),
         Command::Explain(options) => explain::run(&options).and_then(|words| print(&words)),
         Command::Fit(options) => fit::run(&options).and_then(|report| print(&report)),
@@ -67,6 +69,15 @@ fn visit(options: Visitor) -> anyhow::Result<()> {
         tokio::select! {
             done = visitor::run(options) => done,
             _ = told_by_signal() => Ok(()),
+        }
+    })
+}
+
+fn first_motion(options: &Commission) -> anyhow::Result<()> {
+    runtime()?.block_on(async {
+        tokio::select! {
+            done = commission::run(options) => done,
+            _ = told_by_signal() => anyhow::bail!("not commissioned: ended by a signal"),
         }
     })
 }

@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, bail};
 use covr_engine::frames::Floor;
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::safety::separation::KeptFrom;
@@ -28,6 +28,7 @@ use crate::app::{App, Asker};
 use crate::calibrations::Calibrations;
 use crate::clients::Clients;
 use crate::clock::Clock;
+use crate::commissionings::Commissionings;
 use crate::config::{Config, Loaded, MachineKind};
 use crate::control::{Control, Ended, Setup, StopLaneName, real_time};
 use crate::hand::Hand;
@@ -99,6 +100,7 @@ impl Server {
         let priors = store.priors_in_force().await?;
 
         let calibrations = Calibrations::open(&config, &store).await.context("calibrations")?;
+        let commissionings = Commissionings::open(&config, &store).await.context("commissionings")?;
         let persons = Arc::new(Persons::default());
         let clients = Arc::new(Clients::new(config.clients.most));
         let scene = active.scene.clone();
@@ -173,6 +175,7 @@ impl Server {
             persons,
             stage,
             calibrations,
+            commissionings,
             clients,
             doorstep: Arc::new(Semaphore::new(clients_most)),
             dashboard_seats: Arc::new(Semaphore::new(dashboards)),
@@ -327,7 +330,6 @@ fn machine(config: &Config, clock: Clock) -> anyhow::Result<Box<dyn Gantry>> {
             Ok(Box::new(SimulatedMachine::new(parameters).context("the simulated machine")?))
         }
         MachineKind::RoboClaw => {
-            ensure!(config.machine.roboclaw.brake_measured, NOT_MEASURED);
             let settings = config.machine.roboclaw.settings(config);
             // Below the control thread, above everything else.
             let priority = config.control.real_time.then(|| config.control.priority.saturating_sub(1).max(1));
@@ -367,23 +369,8 @@ async fn active_scene(store: &Store, last: Option<(i64, i64)>) -> anyhow::Result
     ActiveScene::build(stored).map_err(|errors| anyhow::anyhow!("{errors:?}"))
 }
 
-const NOT_MEASURED: &str = "machine.roboclaw.brake_measured: found false; the separation rule stands on the braking of machine.x and machine.y, so measure it on \
-     this machine under its load, write what it showed there, and set this to true";
 const FIRST_SCENE: &str = include_str!("../../../deploy/scenes/demo.json");
 const LOOK_AT_TOKENS_EVERY: Duration = Duration::from_secs(1);
 const SECS_AN_HOUR: f64 = 3_600.0;
 const AT_REST_MPS: f64 = 0.01;
 const LONGEST_CLOSE: Duration = Duration::from_secs(3);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_machine_whose_brake_nobody_measured_is_not_driven() {
-        let mut config = Config::default();
-        config.machine.kind = MachineKind::RoboClaw;
-        let refused = machine(&config, Clock::started_now()).err().unwrap();
-        assert!(refused.to_string().contains("machine.roboclaw.brake_measured"), "{refused}");
-    }
-}

@@ -4,6 +4,7 @@
 //! The control loop never comes here.
 
 mod calibrations;
+mod commissionings;
 mod events;
 mod priors;
 mod recordings;

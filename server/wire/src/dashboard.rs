@@ -217,7 +217,7 @@ pub struct Event {
     /// Kind: `mode_changed`, `rule_breached`, `rule_cleared`, `request_accepted`, `request_refused`, `stop_pressed`,
     /// `came_to_rest`, `jog_began`, `jog_ended`, `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
     /// `scene_activated`, `prior_changed`, `client_connected`, `client_gone`, `client_error`, `calibration_accepted`,
-    /// `calibration_refused`, `calibration_chosen`.
+    /// `calibration_refused`, `calibration_chosen`, `machine_commissioned`, `commissioning_refused`.
     pub kind: String,
     /// In plain words.
     pub summary: String,
@@ -228,7 +228,7 @@ pub struct Event {
 
 impl Event {
     /// Every kind.
-    pub const KINDS: [&'static str; 24] = [
+    pub const KINDS: [&'static str; 26] = [
         "mode_changed",
         "rule_breached",
         "rule_cleared",
@@ -253,6 +253,8 @@ impl Event {
         "calibration_accepted",
         "calibration_refused",
         "calibration_chosen",
+        "machine_commissioned",
+        "commissioning_refused",
     ];
 }
 

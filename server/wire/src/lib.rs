@@ -5,6 +5,7 @@ pub mod answers;
 pub mod calibration;
 pub mod client;
 pub mod clock;
+pub mod commissioning;
 mod complaint;
 pub mod convention;
 pub mod dashboard;

@@ -19,6 +19,7 @@ pub use trouble::MachineTrouble;
 pub(crate) use words::in_words;
 
 use crate::calibration::{CalibrationRefusal, HardwarePart};
+use crate::commissioning::{CommissioningStep, RailAxis};
 use crate::dashboard::Mode;
 
 /// A reason. Persons are named, objects and keep-out shapes have their ids; SI units.
@@ -459,6 +460,49 @@ pub enum Reason {
         other: String,
         /// Its W.
         other_weight: f64,
+    },
+    /// Arm: this machine was not commissioned.
+    NotCommissioned,
+    /// Arm: the machine was commissioned as another.
+    CommissioningOutdated {
+        /// What changed.
+        part: HardwarePart,
+        /// What it was.
+        was: String,
+        /// What it is.
+        is: String,
+    },
+    /// Commissioning: steps of the checklist are missing.
+    CommissioningUnfinished {
+        /// The first of them.
+        step: CommissioningStep,
+    },
+    /// Commissioning: no stop from speed was measured this way.
+    NoBrakeRun {
+        /// The axis.
+        axis: RailAxis,
+        /// Away from the home corner, else towards it.
+        positive: bool,
+        /// The speed that it needs, m/s.
+        needed_mps: f64,
+    },
+    /// Commissioning, arm: the brake does less than the limits say.
+    BrakesWorse {
+        /// The axis.
+        axis: RailAxis,
+        /// As measured, m/s2.
+        measured_mps2: f64,
+        /// As the limits say, m/s2.
+        needed_mps2: f64,
+    },
+    /// Commissioning: a stop took a longer way than separation allows for.
+    BrakesLonger {
+        /// The axis.
+        axis: RailAxis,
+        /// As measured, m.
+        distance_m: f64,
+        /// As allowed for, m.
+        allowed_m: f64,
     },
     /// Confirm clear: somebody is in the arena.
     PersonInside {

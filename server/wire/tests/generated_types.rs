@@ -11,6 +11,7 @@ use covr_wire::calibration::{
     Calibration, CalibrationDraft, CalibrationRefusal, CalibrationSummary, NewCalibrationPoint,
 };
 use covr_wire::client::{ErrorCode, FromClient, ToClient};
+use covr_wire::commissioning::Commissioning;
 use covr_wire::dashboard::{Event, FromDashboard, ToDashboard};
 use covr_wire::reason::Reason;
 use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
@@ -44,6 +45,7 @@ fn generate() -> BTreeMap<String, String> {
     Session::export_all(&config).expect("sessions");
     SessionDetail::export_all(&config).expect("sessions");
     ConfigInForce::export_all(&config).expect("the configuration");
+    Commissioning::export_all(&config).expect("commissionings");
     Calibration::export_all(&config).expect("calibrations");
     CalibrationSummary::export_all(&config).expect("calibrations");
     CalibrationDraft::export_all(&config).expect("calibrations");

@@ -121,7 +121,7 @@ export class CovrServer {
     await until("the boards are there", 20_000, () => (this.#log.includes("roboclaw emulator on") ? true : null));
     const kind = 'kind = "roboclaw"\n';
     const machine = config.includes("[machine]\n") ? config.replace("[machine]\n", `[machine]\n${kind}`) : `${config}\n[machine]\n${kind}`;
-    return `${machine}\n[machine.roboclaw]\nbrake_measured = true\nport = "${port}"\ncurrent_limit_amps = 7.0\nhome_by = "stops"\nswitch_outside_m = 0.03\n`;
+    return `${machine}\n[machine.roboclaw]\nemulated = true\nport = "${port}"\ncurrent_limit_amps = 7.0\nhome_by = "stops"\nswitch_outside_m = 0.03\n`;
   }
 
   async #end(): Promise<void> {

@@ -7,6 +7,7 @@ import type {
   CalibrationDraft,
   CalibrationSummary,
   CalibrationTask,
+  Commissioning,
   ConfigInForce,
   Me,
   NewCalibrationPoint,
@@ -193,6 +194,11 @@ export function exportAddress(id: number, format: "csv" | "json"): string {
 /** `GET /api/v1/events`, newest first. */
 export async function listEvents(limit: number): Promise<readonly WireEvent[]> {
   return (await call("GET", `/api/v1/events?limit=${limit}`)) as readonly WireEvent[];
+}
+
+/** `GET /api/v1/commissionings`, newest first. */
+export async function listCommissionings(): Promise<readonly Commissioning[]> {
+  return (await call("GET", "/api/v1/commissionings")) as readonly Commissioning[];
 }
 
 /** `GET /api/v1/calibrations`, newest first. */

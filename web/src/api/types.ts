@@ -13,6 +13,8 @@ export type {
   CalibrationTask,
   Client,
   Column,
+  Commissioning,
+  CommissioningStep,
   ConfigInForce,
   ConfigKey,
   ControlLoop,

@@ -10,7 +10,7 @@ export const GROUPS = {
   priors: ["prior_changed"],
   scenes: ["scene_activated", "scene_stored", "scene_event"],
   clients: ["client_connected", "client_gone", "client_error", "signed_in", "signed_out", "token_made", "token_revoked", "token_taken_back"],
-  calibration: ["calibration_accepted", "calibration_refused", "calibration_chosen"],
+  calibration: ["calibration_accepted", "calibration_refused", "calibration_chosen", "machine_commissioned", "commissioning_refused"],
 } as const satisfies Readonly<Record<string, readonly string[]>>;
 
 /** What an event is about. */

@@ -77,6 +77,10 @@ function textOf(event: WireEvent, label: (object: string) => string): EventWords
     case "person_left":
     case "origin_changed":
       return of(text[event.kind], ["name"]);
+    case "machine_commissioned":
+      return of(text.machine_commissioned, ["author"]);
+    case "commissioning_refused":
+      return of(text.commissioning_refused, ["author"], why("detail"));
     case "came_to_rest": {
       const way = detail["distance_m"];
       const secs = number("secs");

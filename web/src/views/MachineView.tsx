@@ -6,6 +6,7 @@ import { decimal, metres } from "../lib/format";
 import type { Live } from "../live/live";
 import { Calibration } from "../ui/calibration/Calibration";
 import { Configuration } from "../ui/Configuration";
+import { Commissioning } from "../ui/Commissioning";
 import { Jog } from "../ui/Jog";
 import { Said } from "../ui/Said";
 
@@ -20,6 +21,7 @@ export function MachineView(props: { readonly live: Live; readonly author: strin
           <>
             <Axes column={snapshot().column} shape={props.live.server()?.shape ?? null} />
             <Jog live={props.live} />
+            <Commissioning live={props.live} />
             <Show
               when={snapshot().machine_health}
               fallback={

@@ -116,6 +116,8 @@ const TABLE: &[(&str, Who)] = &[
     ("GET /api/v1/sessions/{id}/export", LOOK_BACK),
     ("GET /api/v1/events", LOOK_BACK),
     ("GET /api/v1/config", LOOK_BACK),
+    ("GET /api/v1/commissionings", LOOK_BACK),
+    ("POST /api/v1/commissionings", RUN),
     ("GET /api/v1/calibrations", LOOK_BACK),
     ("GET /api/v1/calibrations/{id}", LOOK_BACK),
     ("GET /api/v1/calibrations/draft", LOOK_BACK),

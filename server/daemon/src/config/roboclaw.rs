@@ -12,8 +12,8 @@ use super::Config;
 /// Boards, line and motors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RoboClaw {
-    /// The limits were measured on this machine.
-    pub brake_measured: bool,
+    /// The boards are emulated ones.
+    pub emulated: bool,
     /// The serial port.
     pub port: PathBuf,
     /// Its rate, bits a second.
@@ -58,7 +58,7 @@ impl Default for RoboClaw {
     fn default() -> Self {
         let axis = |counts_per_metre| RoboClawAxis { counts_per_metre, reversed: false, velocity: [0.0; 4] };
         Self {
-            brake_measured: false,
+            emulated: false,
             port: "/dev/roboclaw".into(),
             baud: 460_800,
             address: 0x80,

@@ -12,6 +12,7 @@ use covr_wire::answers::{PriorChange, SceneSummary, SceneVersionSummary};
 use covr_wire::calibration::{
     Calibration, CalibrationDraft, CalibrationSummary, CalibrationTask, NewCalibrationPoint,
 };
+use covr_wire::commissioning::{Commissioning, NewCommissioning};
 use covr_wire::dashboard::{Event, Snapshot};
 use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
 use covr_wire::scene::SceneDocument;
@@ -95,6 +96,8 @@ fn add_wire_schemas(document: &mut Value) {
     generator.subschema_for::<NewCalibrationPoint>();
     generator.subschema_for::<CalibrationDraft>();
     generator.subschema_for::<Calibration>();
+    generator.subschema_for::<NewCommissioning>();
+    let commissionings = generator.subschema_for::<Vec<Commissioning>>();
     let calibrations = generator.subschema_for::<Vec<CalibrationSummary>>();
     let sessions = generator.subschema_for::<Vec<Session>>();
     let events = generator.subschema_for::<Vec<Event>>();
@@ -105,6 +108,7 @@ fn add_wire_schemas(document: &mut Value) {
     for (name, schema) in generator.take_definitions(true) {
         schemas[name] = schema;
     }
+    schemas["CommissioningList"] = commissionings.to_value();
     schemas["CalibrationList"] = calibrations.to_value();
     schemas["EventList"] = events.to_value();
     schemas["SceneList"] = scenes.to_value();

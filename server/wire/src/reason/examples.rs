@@ -2,6 +2,7 @@
 
 use super::{MachineTrouble, Reason};
 use crate::calibration::{CalibrationRefusal, HardwarePart};
+use crate::commissioning::{CommissioningStep, RailAxis};
 use crate::dashboard::Mode;
 
 impl Reason {
@@ -138,6 +139,16 @@ impl Reason {
                 other: "lamp".into(),
                 other_weight: 0.834,
             },
+            Self::NotCommissioned,
+            Self::CommissioningOutdated {
+                part: HardwarePart::Firmware,
+                was: "USB Roboclaw 2x15a v4.2.8".into(),
+                is: "USB Roboclaw 2x15a v4.3.6".into(),
+            },
+            Self::CommissioningUnfinished { step: CommissioningStep::WiredStop },
+            Self::NoBrakeRun { axis: RailAxis::X, positive: true, needed_mps: 0.99 },
+            Self::BrakesWorse { axis: RailAxis::Y, measured_mps2: 1.834, needed_mps2: 2.5 },
+            Self::BrakesLonger { axis: RailAxis::X, distance_m: 0.4834, allowed_m: 0.3834 },
             Self::PersonInside { person: "Ada".into() },
             Self::ArenaConfirmedClear,
             Self::JogsWhileHeld,

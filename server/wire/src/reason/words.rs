@@ -195,6 +195,33 @@ impl fmt::Display for Reason {
                 }
                 write!(f, "undecided between {object} {weight:.2} and {other} {other_weight:.2}")
             }
+            Self::NotCommissioned => {
+                write!(f, "this machine was not commissioned: run covr commission, which measures its brake")
+            }
+            Self::CommissioningOutdated { part, was, is } => write!(
+                f,
+                "this machine was commissioned as another: its {} was {was} and is {is}; run covr commission again",
+                part.in_words()
+            ),
+            Self::CommissioningUnfinished { step } => {
+                write!(f, "the checklist is not done: {} is missing", step.in_words())
+            }
+            Self::NoBrakeRun { axis, positive, needed_mps } => write!(
+                f,
+                "no stop from {needed_mps:.2} m/s was measured {} the home corner along {}",
+                if *positive { "away from" } else { "towards" },
+                axis.name()
+            ),
+            Self::BrakesWorse { axis, measured_mps2, needed_mps2 } => write!(
+                f,
+                "along {} the brake does {measured_mps2:.2} m/s2, and its limits say {needed_mps2:.2} m/s2",
+                axis.name()
+            ),
+            Self::BrakesLonger { axis, distance_m, allowed_m } => write!(
+                f,
+                "along {} a stop took {distance_m:.3} m, and {allowed_m:.3} m are allowed for",
+                axis.name()
+            ),
             Self::PersonInside { person } => write!(f, "{person} is in the arena"),
             Self::ArenaConfirmedClear => write!(f, "the arena is clear, somebody looked"),
             Self::JogsWhileHeld => write!(f, "moves by hand while the button is held"),

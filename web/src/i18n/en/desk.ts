@@ -139,6 +139,8 @@ export const desk = {
     origin_changed: (person: string) => `tracking origin of ${person} changed`,
     touch_began: (person: string, object: string) => `${person} touched ${object}`,
     touch_ended: (person: string, object: string) => `${person} let go of ${object}`,
+    machine_commissioned: (author: string) => `${author} commissioned the machine`,
+    commissioning_refused: (author: string) => `${author}: commissioning refused`,
     came_to_rest: (way: string, secs: string) => `the column came to rest, ${way} m and ${secs} s after the stop`,
     jog_began: "the column is moved by hand",
     jog_ended: "the column is moved by hand no more",

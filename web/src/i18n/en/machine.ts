@@ -44,6 +44,13 @@ export const machine = {
     moves: "It moves.",
     idle: "It is held by nobody.",
   },
+  commissioning: {
+    title: "Commissioning",
+    none: "It was not commissioned.",
+    notRead: (why: string) => `The commissionings could not be read: ${why}`,
+    last: (when: string, who: string, load: string, x: string, y: string) => `Commissioned ${when} by ${who} under ${load} kg: the brake does ${x} m/s² along x and ${y} m/s² along y.`,
+    means: "A real machine is armed only as it was commissioned: run covr commission in a terminal. It walks through the first motion and measures the brake; it leaves nothing out.",
+  },
   board: {
     title: "Motor controller",
     none: "The simulated machine has no boards and no link. With machine.kind “roboclaw” they are shown here.",

@@ -1,5 +1,5 @@
 /** Reasons: why a rule stands as it does, why the column does what it does, why a request was answered so. */
-import type { HardwarePart, MachineTrouble } from "../../api/types";
+import type { CommissioningStep, HardwarePart, MachineTrouble } from "../../api/types";
 import { AT_RAD, CENTIMETRES_FOR_METRES, METRES_FOR_CENTIMETRES, refusalSentence, type ReasonSentences, type RefusalSentences } from "../reasons";
 
 /** What keeps a machine from being driven. */
@@ -57,6 +57,17 @@ export const refusals: RefusalSentences = {
     `where the headset sits on the column is not known: enter it, or touch at least ${fewest} places with the same headset (${found} so far)`,
   column_moved: ({ moved_m, most_m }, number) =>
     `the column moved by ${number(moved_m * 1e3, 1)} mm while the point was taken, at most ${number(most_m * 1e3, 1)} mm is at rest`,
+};
+
+/** The steps of the commissioning's checklist. */
+const commissioningSteps: Record<CommissioningStep, string> = {
+  wired_stop: "the wired stop",
+  arena_clear: "the look into the arena",
+  link: "the link",
+  home: "homing",
+  directions: "the directions of the axes",
+  stop_lanes: "the software stop",
+  brake: "the brake",
 };
 
 /** By the id that the server sends; the same sentences as the server's own. */
@@ -176,6 +187,15 @@ export const reasons: ReasonSentences = {
   next_in_line: ({ object, weight }, { number, object: label }) => `next ${label(object)} ${number(weight, 2)}`,
   undecided: ({ person, object, weight, other, other_weight }, { number, object: label }) =>
     `${person === null ? "" : `for ${person}, `}undecided between ${label(object)} ${number(weight, 2)} and ${label(other)} ${number(other_weight, 2)}`,
+  not_commissioned: () => "this machine was not commissioned: run covr commission, which measures its brake",
+  commissioning_outdated: ({ part, was, is }) => `this machine was commissioned as another: its ${hardwareParts[part]} was ${was} and is ${is}; run covr commission again`,
+  commissioning_unfinished: ({ step }) => `the checklist is not done: ${commissioningSteps[step]} is missing`,
+  no_brake_run: ({ axis, positive, needed_mps }, { number }) =>
+    `no stop from ${number(needed_mps, 2)} m/s was measured ${positive ? "away from" : "towards"} the home corner along ${axis}`,
+  brakes_worse: ({ axis, measured_mps2, needed_mps2 }, { number }) =>
+    `along ${axis} the brake does ${number(measured_mps2, 2)} m/s2, and its limits say ${number(needed_mps2, 2)} m/s2`,
+  brakes_longer: ({ axis, distance_m, allowed_m }, { number }) =>
+    `along ${axis} a stop took ${number(distance_m, 3)} m, and ${number(allowed_m, 3)} m are allowed for`,
   person_inside: ({ person }) => `${person} is in the arena`,
   arena_confirmed_clear: () => "the arena is clear, somebody looked",
   jogs_while_held: () => "moves by hand while the button is held",

@@ -207,6 +207,8 @@ export const records = {
       rule_cleared: "rule cleared",
       request_accepted: "request",
       request_refused: "refused",
+      machine_commissioned: "commissioned",
+      commissioning_refused: "commissioning refused",
       came_to_rest: "the column came to rest",
       jog_began: "moved by hand",
       jog_ended: "moved by hand no more",

@@ -27,7 +27,7 @@ export const config: Readonly<Record<string, string>> = {
   "machine.y.acceleration_mps2": "Plus grande accélération le long du rail transversal, m/s2.",
   "machine.y.braking_mps2": "Plus grande décélération le long du rail transversal, d’après l’essai de freinage, m/s2.",
   "machine.y.jerk_mps3": "Plus grand à-coup le long du rail transversal, m/s3.",
-  "machine.roboclaw.brake_measured": "Si les limites de machine.x et machine.y, le freinage avant tout, ont été mesurées sur cette machine avec sa charge. Sans cela le serveur ne démarre pas avec elle.",
+  "machine.roboclaw.emulated": "Si les cartes sont celles de covr emulate roboclaw et que rien ne bouge : une telle machine est armée sans mise en service (covr commission). Jamais pour de vraies cartes.",
   "machine.roboclaw.port": "Pour machine.kind « roboclaw » : le port série, de préférence sous le nom d’une règle udev, pour qu’il reste le même après un débranchement.",
   "machine.roboclaw.baud": "Débit de la ligne série, bits par seconde. Une carte en USB accepte tout débit.",
   "machine.roboclaw.address": "Adresse de la carte : 128 est 0x80. Le grand rail est son M1, le rail transversal son M2.",

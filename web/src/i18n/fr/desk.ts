@@ -139,6 +139,8 @@ export const desk = {
     origin_changed: (person: string) => `l’origine du suivi de ${person} a changé`,
     touch_began: (person: string, object: string) => `${person} a touché ${object}`,
     touch_ended: (person: string, object: string) => `${person} a lâché ${object}`,
+    machine_commissioned: (author: string) => `${author} a mis la machine en service`,
+    commissioning_refused: (author: string) => `${author} : mise en service refusée`,
     came_to_rest: (way: string, secs: string) => `la colonne est au repos, ${way} m et ${secs} s après l’arrêt`,
     jog_began: "la colonne est déplacée à la main",
     jog_ended: "la colonne n’est plus déplacée à la main",

@@ -44,6 +44,13 @@ export const machine = {
     moves: "Elle bouge.",
     idle: "Personne ne la tient.",
   },
+  commissioning: {
+    title: "Mise en service",
+    none: "Elle n’a pas été mise en service.",
+    notRead: (why: string) => `Les mises en service n’ont pas pu être lues : ${why}`,
+    last: (when: string, who: string, load: string, x: string, y: string) => `Mise en service ${when} par ${who} sous ${load} kg : le frein fait ${x} m/s² le long de x et ${y} m/s² le long de y.`,
+    means: "Une vraie machine n’est armée que telle qu’elle a été mise en service : lancez covr commission dans un terminal. La commande guide le premier mouvement et mesure le frein ; elle ne saute rien.",
+  },
   board: {
     title: "Contrôleur de moteurs",
     none: "La machine simulée n’a ni cartes ni liaison. Avec machine.kind « roboclaw » elles sont montrées ici.",

@@ -1,5 +1,5 @@
 /** Motifs : pourquoi une règle est dans cet état, pourquoi la colonne fait ce qu’elle fait, pourquoi une demande a reçu cette réponse. */
-import type { HardwarePart, MachineTrouble } from "../../api/types";
+import type { CommissioningStep, HardwarePart, MachineTrouble } from "../../api/types";
 import { AT_RAD, CENTIMETRES_FOR_METRES, METRES_FOR_CENTIMETRES, refusalSentence, type ReasonSentences, type RefusalSentences } from "../reasons";
 
 /** Ce qui empêche de piloter la machine. */
@@ -25,6 +25,17 @@ export const hardwareParts: Record<HardwarePart, string> = {
   firmware: "micrologiciel du contrôleur",
   encoders: "nombre d’impulsions par mètre",
   convention: "convention du client",
+};
+
+/** Les étapes de la mise en service. */
+const commissioningSteps: Record<CommissioningStep, string> = {
+  wired_stop: "l’arrêt câblé",
+  arena_clear: "le coup d’œil dans l’arène",
+  link: "la liaison",
+  home: "la prise d’origine",
+  directions: "le sens des axes",
+  stop_lanes: "l’arrêt logiciel",
+  brake: "le frein",
 };
 
 /** Why points make no calibration. */
@@ -176,6 +187,15 @@ export const reasons: ReasonSentences = {
   next_in_line: ({ object, weight }, { number, object: label }) => `ensuite ${label(object)} ${number(weight, 2)}`,
   undecided: ({ person, object, weight, other, other_weight }, { number, object: label }) =>
     `${person === null ? "" : `pour ${person}, `}hésite entre ${label(object)} ${number(weight, 2)} et ${label(other)} ${number(other_weight, 2)}`,
+  not_commissioned: () => "cette machine n’a pas été mise en service : lancez covr commission, qui mesure son frein",
+  commissioning_outdated: ({ part, was, is }) => `cette machine a été mise en service autre qu’elle n’est (${hardwareParts[part]} : ${was} alors, ${is} maintenant) ; relancez covr commission`,
+  commissioning_unfinished: ({ step }) => `la mise en service n’est pas finie : il manque ${commissioningSteps[step]}`,
+  no_brake_run: ({ axis, positive, needed_mps }, { number }) =>
+    `aucun arrêt depuis ${number(needed_mps, 2)} m/s n’a été mesuré en ${positive ? "s’éloignant" : "s’approchant"} de l’origine le long de ${axis}`,
+  brakes_worse: ({ axis, measured_mps2, needed_mps2 }, { number }) =>
+    `le long de ${axis} le frein fait ${number(measured_mps2, 2)} m/s2, et ses limites disent ${number(needed_mps2, 2)} m/s2`,
+  brakes_longer: ({ axis, distance_m, allowed_m }, { number }) =>
+    `le long de ${axis} un arrêt a pris ${number(distance_m, 3)} m, pour ${number(allowed_m, 3)} m prévus`,
   person_inside: ({ person }) => `${person} est dans l’arène`,
   arena_confirmed_clear: () => "l’arène est vide, quelqu’un a regardé",
   jogs_while_held: () => "se déplace à la main tant que le bouton est maintenu",

@@ -207,6 +207,8 @@ export const records = {
       rule_cleared: "règle levée",
       request_accepted: "demande",
       request_refused: "refus",
+      machine_commissioned: "mise en service",
+      commissioning_refused: "mise en service refusée",
       came_to_rest: "la colonne est au repos",
       jog_began: "déplacée à la main",
       jog_ended: "n’est plus déplacée à la main",

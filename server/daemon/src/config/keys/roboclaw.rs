@@ -9,9 +9,9 @@ use crate::config::Config;
 pub fn keys() -> Vec<Key> {
     vec![
         Key::new(
-            "machine.roboclaw.brake_measured",
-            "Whether the limits of machine.x and machine.y, the braking above all, were measured on this machine under its load. Without that the server does not start on it.",
-            Place::Switch(|c| &mut c.machine.roboclaw.brake_measured),
+            "machine.roboclaw.emulated",
+            "Whether the boards are those of covr emulate roboclaw, so that nothing moves: such a machine is armed without having been commissioned (covr commission). Never for real boards.",
+            Place::Switch(|c| &mut c.machine.roboclaw.emulated),
         ),
         Key::new(
             "machine.roboclaw.port",

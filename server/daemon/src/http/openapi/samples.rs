@@ -7,6 +7,7 @@ use covr_wire::calibration::{
     PointOn, Pointer,
 };
 use covr_wire::client::Convention;
+use covr_wire::commissioning::{BrakeRun, Commissioning, CommissioningStep, NewCommissioning};
 use covr_wire::examples;
 use covr_wire::records::{RecordedFrame, SceneInForce, Session, SessionDetail};
 use serde::Serialize;
@@ -38,6 +39,12 @@ pub fn of(schema: &str) -> Option<Value> {
             active: true,
             objects: 12,
         }),
+        "NewCommissioning" => value(NewCommissioning {
+            begun_at: AT.into(),
+            load_kg: 12.5,
+            steps: CommissioningStep::ALL.to_vec(),
+        }),
+        "Commissioning" => value(commissioning()),
         "CalibrationTask" => value(calibration_task()),
         "NewCalibrationPoint" => {
             value(NewCalibrationPoint { on: PointOn::Place, place_m: Some([1.0, 0.5, 0.0]) })
@@ -103,6 +110,27 @@ fn calibration_task() -> CalibrationTask {
         pointer: Pointer::RightHand,
         offset_m: None,
         prop: None,
+    }
+}
+
+fn commissioning() -> Commissioning {
+    let Calibration { hardware, .. } = calibration();
+    let run = BrakeRun {
+        velocity_mps: [1.1, 0.0],
+        secs: 0.49,
+        distance_m: [0.291, 0.0],
+        allowed_m: [0.354, 0.0],
+        braking_mps2: [Some(2.53), None],
+    };
+    Commissioning {
+        id: 1,
+        author: "Ada".into(),
+        created_at: AT.into(),
+        load_kg: 12.5,
+        braking_mps2: [2.53, 2.51],
+        runs: vec![run],
+        hardware,
+        changed: Vec::new(),
     }
 }
 
