@@ -1,13 +1,15 @@
 //! A machine on a bench: how time passes for it, and how its link and its power are cut.
 
-use covr_engine::frames::Floor;
-use covr_engine::machine::{Limits, Travel};
+use std::time::Duration;
+
+use covr_engine::machine::Limits;
 use covr_engine::time::{Span, Time};
 use covr_gantry::contract::{Gantry, Simulated};
 use covr_gantry::ideal::IdealMachine;
 use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::faults::{Faults, LinkFault};
 use covr_gantry::sim::parameters::MachineParameters;
+use covr_tests::boards::{Boards, PARKED, TRAVEL};
 
 /// One machine and its surroundings.
 pub trait Bench {
@@ -30,11 +32,6 @@ pub trait Bench {
         false
     }
 }
-
-/// A metre by a metre, so that homing is short.
-pub const TRAVEL: Travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(1.0, 1.0) };
-/// Where the column is parked.
-pub const PARKED: Floor = Floor::new(0.3, 0.2);
 
 /// The simulated machine on virtual time.
 pub struct SimulatedBench {
@@ -92,5 +89,29 @@ impl Bench for Ideal {
 
     fn pass(&mut self, span: Span) {
         self.now += span;
+    }
+}
+
+impl Bench for Boards {
+    fn gantry(&mut self) -> &mut dyn Gantry {
+        &mut self.machine
+    }
+
+    fn now(&self) -> Time {
+        Boards::now(self)
+    }
+
+    fn pass(&mut self, span: Span) {
+        std::thread::sleep(Duration::from_micros(span.micros() as u64));
+    }
+
+    fn cut(&mut self, cut: bool) -> bool {
+        self.order(if cut { "unplug" } else { "plug" });
+        true
+    }
+
+    fn interrupt_power(&mut self) -> bool {
+        self.order("brown-out 100");
+        true
     }
 }

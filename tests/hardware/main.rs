@@ -6,11 +6,10 @@
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the report")]
 
 mod bench;
-mod boards;
 mod suite;
 
 use bench::{Ideal, SimulatedBench};
-use boards::Boards;
+use covr_tests::boards::Boards;
 use suite::conforms;
 
 #[test]

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "in a test a panic is the report")]
 
+pub mod boards;
 pub mod client;
 pub mod contract;
 pub mod dashboard;

@@ -97,6 +97,10 @@ pub struct LinkFigures {
     pub lost: u64,
     /// Of these, sent again.
     pub repeated: u64,
+    /// Whole cycles.
+    pub cycles: u64,
+    /// Bytes that they took, either way.
+    pub bytes: u64,
     /// Cycles without a whole look.
     pub cycles_lost: u64,
     /// How the last of them was lost; empty for none.

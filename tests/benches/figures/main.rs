@@ -8,6 +8,7 @@
 #![allow(clippy::unwrap_used, reason = "in a benchmark a panic is the report")]
 
 mod bed;
+mod boards;
 mod browser;
 mod echo;
 mod engine;
@@ -74,6 +75,7 @@ fn main() {
             "lateness" => runtime.block_on(lateness::measure(effort, &mut known)),
             "stop" => runtime.block_on(stop::measure(effort, &known)),
             "reactions" => runtime.block_on(reactions::measure(effort)),
+            "boards" => boards::measure(effort),
             "process" => runtime.block_on(process::measure(effort)),
             "browser" => runtime.block_on(browser::measure(effort)),
             other => unreachable!("{other} is in FIGURES alone"),
@@ -123,4 +125,4 @@ fn say(text: &str) {
 }
 
 const FIGURES: &[&str] =
-    &["engine", "latency", "ingest", "lateness", "stop", "reactions", "process", "browser"];
+    &["engine", "latency", "ingest", "lateness", "stop", "reactions", "boards", "process", "browser"];

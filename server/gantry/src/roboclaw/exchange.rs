@@ -34,6 +34,8 @@ pub struct Tally {
     pub lost: u64,
     /// Of these, sent again.
     pub repeated: u64,
+    /// Bytes, either way.
+    pub bytes: u64,
 }
 
 /// The line and what is known of it.
@@ -134,6 +136,7 @@ impl<P: Port> Line<P> {
         }
         self.is_clean = false;
         self.port.send(packet)?;
+        self.tally.bytes += packet.len() as u64;
         Ok(())
     }
 
@@ -142,6 +145,7 @@ impl<P: Port> Line<P> {
         loop {
             let count = self.port.receive(into, deadline)?;
             if count > 0 || self.port.now() >= deadline {
+                self.tally.bytes += count as u64;
                 return Ok(count);
             }
         }
@@ -260,7 +264,7 @@ mod tests {
         let whole = answer(volts(), &[0, 240]);
         let mut line = line([whole.iter().map(|byte| vec![*byte]).collect()]);
         assert_eq!(line.ask::<2>(volts()).unwrap(), [0, 240]);
-        assert_eq!(line.tally, Tally { answered: 1, ..Tally::default() });
+        assert_eq!(line.tally, Tally { answered: 1, bytes: 2 + 4, ..Tally::default() });
     }
 
     #[test]
@@ -270,7 +274,7 @@ mod tests {
         let late = answer(volts(), &[0, 111]);
         let mut line = line([vec![garbled, late], vec![answer(volts(), &[0, 241])]]);
         assert_eq!(line.ask::<2>(volts()).unwrap(), [0, 241]);
-        assert_eq!(line.tally, Tally { answered: 1, lost: 1, repeated: 1 });
+        assert_eq!(line.tally, Tally { answered: 1, lost: 1, repeated: 1, bytes: 2 * (2 + 4) });
     }
 
     #[test]
@@ -288,7 +292,7 @@ mod tests {
     fn after_three_tries_it_says_so() {
         let mut line = line([]);
         assert!(matches!(line.ask::<2>(volts()), Err(Lost::Silent { command: 24, .. })));
-        assert_eq!(line.tally, Tally { answered: 0, lost: 3, repeated: 2 });
+        assert_eq!(line.tally, Tally { answered: 0, lost: 3, repeated: 2, bytes: 3 * 2 });
     }
 
     #[test]

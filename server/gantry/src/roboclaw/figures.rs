@@ -44,6 +44,8 @@ impl Figures {
         link.exchanges += tally.answered.saturating_sub(self.before.answered);
         link.lost += tally.lost.saturating_sub(self.before.lost);
         link.repeated += tally.repeated.saturating_sub(self.before.repeated);
+        link.bytes += tally.bytes.saturating_sub(self.before.bytes);
+        link.cycles += 1;
         self.before = tally;
     }
 

@@ -2,22 +2,23 @@
 
 use std::io::Write;
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use covr_engine::time::{Span, Time};
-use covr_gantry::contract::Gantry;
+use covr_engine::frames::Floor;
+use covr_engine::machine::Travel;
+use covr_engine::time::Time;
 use covr_gantry::roboclaw::RoboClaw;
 use covr_gantry::roboclaw::settings::HomeBy;
 use covr_server::config::Config;
-use covr_tests::process::program;
 use tempfile::TempDir;
 
-use super::bench::{Bench, PARKED, TRAVEL};
+use crate::process::program;
 
 /// Emulated boards, and the driver at the other end of the line.
 pub struct Boards {
     // Before the emulator: its last word still goes out.
-    machine: RoboClaw,
+    /// The driver.
+    pub machine: RoboClaw,
     emulator: Child,
     orders: ChildStdin,
     began: Instant,
@@ -25,10 +26,11 @@ pub struct Boards {
 }
 
 impl Boards {
+    /// Boards with these options of the emulator on a line of this rate; with a second address there are two.
     pub fn emulated(options: &[&str], baud: usize, second_address: usize) -> Self {
         let dir = tempfile::tempdir().unwrap();
         let port = dir.path().join("boards");
-        let corner = |at: covr_engine::frames::Floor| format!("{},{}", at.x, at.y);
+        let corner = |at: Floor| format!("{},{}", at.x, at.y);
         let mut emulator = Command::new(program())
             .args(["emulate", "roboclaw", "--tuned", "--end-switches", "none", "--baud", &baud.to_string()])
             .args(["--travel", &format!("{},{}", corner(TRAVEL.min), corner(TRAVEL.max))])
@@ -56,32 +58,16 @@ impl Boards {
         Self { machine, emulator, orders, began, _dir: dir }
     }
 
-    fn order(&mut self, order: &str) {
+    /// Give the emulator an order, as on its standard input.
+    pub fn order(&mut self, order: &str) {
         writeln!(self.orders, "{order}").unwrap();
     }
 }
 
-impl Bench for Boards {
-    fn gantry(&mut self) -> &mut dyn Gantry {
-        &mut self.machine
-    }
-
-    fn now(&self) -> Time {
+impl Boards {
+    /// The driver's clock.
+    pub fn now(&self) -> Time {
         since(self.began)
-    }
-
-    fn pass(&mut self, span: Span) {
-        std::thread::sleep(Duration::from_micros(span.micros() as u64));
-    }
-
-    fn cut(&mut self, cut: bool) -> bool {
-        self.order(if cut { "unplug" } else { "plug" });
-        true
-    }
-
-    fn interrupt_power(&mut self) -> bool {
-        self.order("brown-out 100");
-        true
     }
 }
 
@@ -96,3 +82,8 @@ impl Drop for Boards {
 fn since(began: Instant) -> Time {
     Time::from_micros(1_000_000 + began.elapsed().as_micros() as i64)
 }
+
+/// A metre by a metre, so that homing is short.
+pub const TRAVEL: Travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(1.0, 1.0) };
+/// Where the column is parked.
+pub const PARKED: Floor = Floor::new(0.3, 0.2);
