@@ -39,6 +39,11 @@ impl Clock {
     }
 }
 
+/// A time as in RFC 3339 the way that [`wall_now`] writes it, so that text sorts as time; none for what is no time.
+pub fn wall_time(text: &str) -> Option<String> {
+    humantime::parse_rfc3339(text).ok().map(|time| humantime::format_rfc3339_micros(time).to_string())
+}
+
 /// The wall clock now, RFC 3339.
 pub fn wall_now() -> String {
     humantime::format_rfc3339_micros(SystemTime::now()).to_string()

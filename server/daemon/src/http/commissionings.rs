@@ -15,7 +15,7 @@ use utoipa_axum::routes;
 use super::input::{invalid_item, json as read_json};
 use super::problem::Problem;
 use crate::app::{App, Asker};
-use crate::clock::wall_now;
+use crate::clock::{wall_now, wall_time};
 
 /// The routes.
 pub fn routes() -> OpenApiRouter<Arc<App>> {
@@ -45,13 +45,13 @@ async fn add(
     if !(0.0..=MOST_LOAD_KG).contains(&new.load_kg) {
         return Err(invalid_item("load_kg", new.load_kg, "0 to 500 kg"));
     }
-    let Ok(begun) = humantime::parse_rfc3339(&new.begun_at) else {
+    let Some(begun) = wall_time(&new.begun_at) else {
         return Err(invalid_item("begun_at", &new.begun_at, "a time as in RFC 3339, in UTC"));
     };
     if let Some(step) = CommissioningStep::ALL.into_iter().find(|step| !new.steps.contains(step)) {
         return Err(refuse(&app, &asker, Reason::CommissioningUnfinished { step }).await);
     }
-    let runs = app.store.stops_measured_since(begun).await?;
+    let runs = app.store.stops_measured_since(&begun).await?;
     let machine = &app.config.machine;
     let braking_mps2 = match judge(&runs, &machine.limits(), &machine.travel()) {
         Ok(braking_mps2) => braking_mps2,

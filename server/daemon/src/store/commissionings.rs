@@ -1,7 +1,5 @@
 //! Commissionings: only ever added; the last one counts.
 
-use std::time::SystemTime;
-
 use covr_wire::commissioning::{BrakeRun, Commissioning};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -37,13 +35,12 @@ impl Store {
         rows.into_iter().map(commissioning).collect()
     }
 
-    /// The stops from speed since then, oldest first.
-    pub async fn stops_measured_since(&self, since: SystemTime) -> Result<Vec<BrakeRun>, StoreError> {
+    /// The stops from speed since then (as `wall_now` writes it), oldest first.
+    pub async fn stops_measured_since(&self, since: &str) -> Result<Vec<BrakeRun>, StoreError> {
         let rows: Vec<(i64, String)> = sqlx::query_as(
             "SELECT id, detail FROM events WHERE kind = 'came_to_rest' AND at >= ? ORDER BY id",
         )
-        // As events have it, so that text sorts as time.
-        .bind(humantime::format_rfc3339_micros(since).to_string())
+        .bind(since)
         .fetch_all(&self.pool)
         .await?;
         rows.into_iter().map(|(id, detail)| read(id, &detail)).collect()
