@@ -2,6 +2,7 @@
 
 mod faults;
 mod motion;
+mod switches;
 
 use std::io;
 use std::sync::{Arc, Mutex};
