@@ -199,7 +199,7 @@ async fn what_cannot_be_measured_is_refused_and_leaves_no_point() {
     let server = TestServer::start().await;
     let task = json!({ "kind": "room_from_tracking", "client": NAME }).to_string();
     let nobody = server.refused(409, "PUT", "/api/v1/calibrations/draft", Some(&task)).await;
-    assert!(nobody.detail.contains("headset 1 is not connected"), "{nobody:?}");
+    assert!(nobody.detail.contains("no client headset 1 is connected"), "{nobody:?}");
     let point = json!({ "on": "place", "place_m": [0, 0, 0] });
     server.refused(404, "POST", "/api/v1/calibrations/draft/points", Some(&point.to_string())).await;
     server.refused(404, "POST", "/api/v1/calibrations", None).await;
@@ -337,4 +337,27 @@ async fn a_touched_prop_is_offered_as_a_new_version_of_the_scene() {
     assert!((prop["facing"].as_f64().unwrap() - std::f64::consts::FRAC_PI_2).abs() < 1e-2, "{prop}");
     let room_of = format!("/api/v1/calibrations/{}/scene", 1);
     server.refused(409, "POST", &room_of, None).await;
+}
+
+#[tokio::test]
+async fn a_headset_on_the_column_is_nobody_and_its_place_is_where_the_machine_measures_it() {
+    let server = TestServer::start().await;
+    server.good("POST", "/api/v1/home", None).await;
+    let column = server.mode(Mode::Ready).await.snapshot.column.position;
+    let mut client = VrClient::greeted(&server.host, NAME, Encoding::Json).await;
+    let ridden = client.pose_message("tracker", column.x, column.y, 1);
+    client.say(&ridden).await;
+    assert!(client.error().await.message.contains("tracker"), "nothing is measured, so nobody is expected");
+    begin(&server).await;
+    let mut headset = Headset { client, sequence: 0 };
+    let at = [column.x + 0.1, column.y, 1.5];
+    let (status, draft) = headset.take(&server, json!({ "on": "column" }), |_| at).await;
+    assert_eq!(status, 200, "{draft}");
+    let measured = &draft["points"][0];
+    assert!((measured["room_m"][0].as_f64().unwrap() - column.x).abs() < 0.002, "{measured}");
+    assert!((measured["room_m"][1].as_f64().unwrap() - column.y).abs() < 0.002, "{measured}");
+    assert_eq!(measured["room_m"][2], 0.0);
+    assert!(server.app.control.published().snapshot.persons.is_empty(), "it is nobody");
+    let events = server.good("GET", "/api/v1/events", None).await.to_string();
+    assert!(!events.contains("person_entered"), "{events}");
 }

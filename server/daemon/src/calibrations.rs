@@ -78,6 +78,12 @@ impl Calibrations {
         rooms.0.get(client).filter(|room| room.convention == convention).map(|room| room.map)
     }
 
+    /// Which version of a client's calibration is used; none: it is where the configuration says.
+    pub fn version(&self, client: &str, convention: Convention) -> Option<i64> {
+        let rooms = self.rooms.borrow();
+        rooms.0.get(client).filter(|room| room.convention == convention).map(|room| room.version)
+    }
+
     /// Where a client without a calibration is.
     pub const fn configured(&self) -> RoomFromTracking {
         self.configured

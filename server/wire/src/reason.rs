@@ -231,7 +231,7 @@ pub enum Reason {
     },
     /// Calibrate: another point is being taken.
     PointBeingTaken,
-    /// Calibrate: the client is not connected, or speaks for no one person.
+    /// Calibrate: the client is not connected, several are of that name, or it speaks for several people.
     ClientNotThere {
         /// Its name.
         client: String,

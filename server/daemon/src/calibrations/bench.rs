@@ -67,6 +67,11 @@ impl Bench {
         }
     }
 
+    /// The one in the making is measured with this client.
+    pub fn measures_with(&self, client: &str) -> bool {
+        locked(&self.draft).as_ref().is_some_and(|draft| draft.shown.task.client == client)
+    }
+
     /// Begin a calibration; one that was in the making is gone.
     pub fn begin(&self, task: CalibrationTask, author: &str, by: &Measured) -> CalibrationDraft {
         let mut shown = CalibrationDraft {

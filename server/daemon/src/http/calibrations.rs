@@ -65,7 +65,7 @@ async fn draft(State(app): State<Arc<App>>) -> Result<Json<CalibrationDraft>, Pr
 /// Begin a calibration, in place of one that is in the making. Nothing is in force by that.
 #[utoipa::path(put, path = "/calibrations/draft", tag = "calibrations", request_body = ref("#/components/schemas/CalibrationTask"),
     responses((status = 200, body = ref("#/components/schemas/CalibrationDraft")), (status = 400, description = "Not JSON", body = Problem),
-        (status = 409, description = "The client is not connected with one person, is not calibrated (for a prop), or the scene has no such prop", body = Problem),
+        (status = 409, description = "The client is not connected, speaks for several people, is not calibrated (for a prop), or the scene has no such prop", body = Problem),
         (status = 422, description = "Not a task", body = Problem)))]
 async fn begin(
     State(app): State<Arc<App>>,
@@ -131,7 +131,7 @@ async fn take_point(
 /// Leave a point out for good.
 #[utoipa::path(delete, path = "/calibrations/draft/points/{number}", tag = "calibrations", params(("number" = u32, Path, description = "The point's number")),
     responses((status = 200, body = ref("#/components/schemas/CalibrationDraft")), (status = 404, description = "No such point", body = Problem),
-        (status = 409, description = "The client is not connected with one person", body = Problem)))]
+        (status = 409, description = "The client is not connected, or speaks for several people", body = Problem)))]
 async fn remove_point(
     State(app): State<Arc<App>>,
     _: Asker,
@@ -261,12 +261,12 @@ fn check_at_rest(app: &App) -> Result<(), Problem> {
     if moves(mode) { Err(Problem::refused(Reason::NotWhileItMoves)) } else { Ok(()) }
 }
 
-/// The client of a task, where it can measure: connected, by itself under its name, with one person.
+/// The client of a task, where it can measure: connected, by itself under its name, with one person at most.
 fn measured(app: &App, task: &CalibrationTask) -> Result<Measured, Problem> {
     let client = || task.client.clone();
     let of_name: Vec<_> = app.clients.list().into_iter().filter(|known| known.name == task.client).collect();
     let convention = match &of_name[..] {
-        [only] if only.persons.len() == 1 => {
+        [only] if only.persons.len() <= 1 => {
             Convention::ALL.into_iter().find(|convention| convention.name() == only.convention)
         }
         _ => None,

@@ -134,3 +134,74 @@ fn text(value: &impl Serialize) -> Result<String, StoreError> {
 fn read<T: DeserializeOwned>(id: i64, text: &str) -> Result<T, StoreError> {
     serde_json::from_str(text).map_err(unreadable(format!("calibration {id}")))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use covr_wire::client::Convention;
+    use tempfile::TempDir;
+
+    fn new(subject: &str) -> NewCalibration {
+        NewCalibration {
+            kind: CalibrationKind::RoomFromTracking,
+            subject: subject.into(),
+            result: CalibrationResult::RoomFromTracking {
+                convention: Convention::Unity,
+                position_m: [1.0, 2.0, 0.1 + 0.2],
+                orientation: [0.0, 0.0, 0.0, 1.0],
+                rms_m: 0.002,
+                scale: 1.0,
+                tilt_rad: 0.0,
+                uncertainty_m: 0.003,
+                turn_sd_rad: 0.0,
+                offset_m: None,
+            },
+            points: Vec::new(),
+            hardware: Hardware {
+                machine: "simulated".into(),
+                travel_m: [[0.0, 0.0], [4.0, 4.0]],
+                controller: None,
+                firmware: None,
+                counts_per_metre: None,
+            },
+            author: "Ada".into(),
+        }
+    }
+
+    #[tokio::test]
+    async fn versions_count_by_subject_and_the_last_choice_is_in_force() {
+        let dir = TempDir::new().unwrap();
+        let store = Store::open(&dir.path().join("covr.sqlite")).await.unwrap();
+        for subject in ["a", "b", "a"] {
+            store.add_calibration(&new(subject)).await.unwrap();
+        }
+        let all = store.calibrations().await.unwrap();
+        let shown: Vec<_> = all
+            .iter()
+            .map(|one| (one.summary.subject.as_str(), one.summary.version, one.summary.in_force))
+            .collect();
+        assert_eq!(shown, [("a", 2, true), ("b", 1, true), ("a", 1, false)]);
+        assert_eq!(all[0].summary.result, new("a").result, "to the last bit");
+        store.choose_calibration(&all[2].summary, true, "Bo").await.unwrap();
+        store.choose_calibration(&all[1].summary, false, "Bo").await.unwrap();
+        let all = store.calibrations().await.unwrap();
+        let in_force: Vec<_> = all.iter().map(|one| one.summary.in_force).collect();
+        assert_eq!(in_force, [false, false, true]);
+    }
+
+    #[tokio::test]
+    async fn nothing_that_is_stored_is_changed_or_removed() {
+        let dir = TempDir::new().unwrap();
+        let store = Store::open(&dir.path().join("covr.sqlite")).await.unwrap();
+        store.add_calibration(&new("a")).await.unwrap();
+        for statement in [
+            "UPDATE calibrations SET author = 'Eve'",
+            "DELETE FROM calibrations",
+            "UPDATE calibration_choices SET author = 'Eve'",
+            "DELETE FROM calibration_choices",
+        ] {
+            let refused = sqlx::query(statement).execute(&store.pool).await.unwrap_err().to_string();
+            assert!(refused.contains("is never"), "{statement}: {refused}");
+        }
+    }
+}

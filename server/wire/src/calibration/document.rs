@@ -36,7 +36,8 @@ pub enum Pointer {
 pub struct CalibrationTask {
     /// What.
     pub kind: CalibrationKind,
-    /// The name of the VR client that measures; it must be connected, with one person.
+    /// The name of the VR client that measures; it must be connected, with one person at most. Poses of somebody who has not
+    /// entered are taken for measuring: a headset on the column is nobody.
     #[schemars(length(min = 1, max = 64))]
     pub client: String,
     /// What of it is brought to the places.

@@ -110,7 +110,7 @@ impl fmt::Display for Reason {
             }
             Self::PointBeingTaken => write!(f, "another point is being taken: wait for it"),
             Self::ClientNotThere { client } => {
-                write!(f, "the client {client} is not connected with exactly one person")
+                write!(f, "no client {client} is connected by itself with one person at most")
             }
             Self::NoPointer { client } => {
                 write!(f, "the client {client} sends no position of that hand")

@@ -11,7 +11,8 @@ export type CalibrationTask = {
  */
 kind: CalibrationKind, 
 /**
- * The name of the VR client that measures; it must be connected, with one person.
+ * The name of the VR client that measures; it must be connected, with one person at most. Poses of somebody who has not
+ * entered are taken for measuring: a headset on the column is nobody.
  */
 client: string, 
 /**

@@ -99,7 +99,7 @@ export const machine = {
     offset: "Headset on the column, m",
     offsetMeans:
       "Only where the headset rides on the column: from the column's centre on the floor to it. Left empty, it is worked out from three or more touched places.",
-    noClient: "No VR client is connected with exactly one person.",
+    noClient: "No VR client is connected with one person at most.",
     noProp: "The active scene has no prop.",
     badNumbers: "Enter x, y and z in metres.",
     making: (kind: string, of: string, author: string) => `${kind}: ${of}, begun by ${author}`,
@@ -112,7 +112,7 @@ export const machine = {
     ons: { place: "A place of the room", column: "On the column", prop_point: "Point of touch", prop_face: "On its face" },
     onMeans: {
       place: "Floor marks, or any place that was measured.",
-      column: "The headset lies on the column; its place is where the machine measures the column. Needs homing.",
+      column: "Its person has left, and the headset lies on the column, which is moved by hand; its place is where the machine measures the column. Needs homing.",
       prop_point: "Where a hand is to meet the prop.",
       prop_face: "Anywhere on the face, far apart from each other.",
     },

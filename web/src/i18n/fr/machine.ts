@@ -99,7 +99,7 @@ export const machine = {
     offset: "Casque sur la colonne, m",
     offsetMeans:
       "Seulement si le casque est posé sur la colonne : du centre de la colonne, au sol, jusqu’à lui. Laissé vide, il est déduit d’au moins trois lieux touchés.",
-    noClient: "Aucun client VR n’est connecté avec exactement une personne.",
+    noClient: "Aucun client VR n’est connecté avec au plus une personne.",
     noProp: "La scène active n’a pas d’accessoire.",
     badNumbers: "Saisissez x, y et z en mètres.",
     making: (kind: string, of: string, author: string) => `${kind} : ${of}, commencé par ${author}`,
@@ -112,7 +112,7 @@ export const machine = {
     ons: { place: "Un lieu de la salle", column: "Sur la colonne", prop_point: "Point de contact", prop_face: "Sur sa face" },
     onMeans: {
       place: "Des marques au sol, ou tout lieu mesuré.",
-      column: "Le casque est posé sur la colonne ; son lieu est celui où la machine mesure la colonne. Demande une prise d’origine.",
+      column: "Sa personne est sortie et le casque est posé sur la colonne, déplacée à la main ; son lieu est celui où la machine mesure la colonne. Demande une prise d’origine.",
       prop_point: "Là où une main doit rencontrer l’accessoire.",
       prop_face: "N’importe où sur la face, loin les uns des autres.",
     },

@@ -23,7 +23,7 @@ export function Begin(props: {
   const [prop, setProp] = createSignal<string | null>(null);
   // By name: the newest snapshot is another list of the same clients, and a choice must not be lost by it.
   const clients = (): readonly string[] =>
-    (props.live.snapshot()?.clients ?? []).filter((entry) => entry.persons.length === 1).map((entry) => entry.name);
+    (props.live.snapshot()?.clients ?? []).filter((entry) => entry.persons.length <= 1).map((entry) => entry.name);
   const propsOfScene = () => props.live.scene()?.scene.props ?? [];
   const chosenClient = (): string | undefined => clients().find((name) => name === client()) ?? clients()[0];
   const chosenProp = (): string | undefined => propsOfScene().find((entry) => entry.id === prop())?.id ?? propsOfScene()[0]?.id;

@@ -244,7 +244,8 @@ impl Guest {
             scene: Some(ActiveScene::new(active.id, active.version, active.document.clone(), &frame)),
         };
         tracing::info!(client = hello.name, convention = hello.convention.name(), "VR client connected");
-        let detail = json!({ "client": hello.name, "convention": hello.convention.name() });
+        let calibration = self.app.calibrations.version(&hello.name, hello.convention);
+        let detail = json!({ "client": hello.name, "convention": hello.convention.name(), "calibration": calibration });
         self.record("client_connected", format!("client {} connected", hello.name), detail);
         self.greeted = Some(Greeted { hello: hello.clone(), frame });
         self.show(received);
@@ -315,12 +316,20 @@ impl Guest {
             self.rooms.mark_unchanged();
             greeted.frame = self.app.calibrations.frame(&greeted.hello.name, greeted.hello.convention);
         }
-        let present = self.persons.get_mut(&pose.person).ok_or_else(|| unknown_person(&pose.person))?;
+        let bench = &self.app.calibrations.bench;
+        let Some(present) = self.persons.get_mut(&pose.person) else {
+            // A headset on the column is nobody: the column could not move for it. It is heard where it measures, and nowhere else.
+            if bench.measures_with(&greeted.hello.name) {
+                bench.hear(&greeted.hello.name, greeted.hello.convention, pose);
+                return Ok(());
+            }
+            return Err(unknown_person(&pose.person));
+        };
         present.sequencer.accept(pose.sequence).map_err(|wrong| {
             let expected = format!("more than {}", wrong.last);
             ClientError::at(ErrorCode::OutOfOrder, "sequence", wrong.found.to_string(), expected)
         })?;
-        self.app.calibrations.bench.hear(&greeted.hello.name, greeted.hello.convention, pose);
+        bench.hear(&greeted.hello.name, greeted.hello.convention, pose);
         let taken_at = self.clock.server_time(pose.client_time_micros, received);
         present.slot.put(PoseSample {
             taken_at,
