@@ -260,7 +260,7 @@ async fn another_is_put_in_force_and_out_of_it_but_not_while_armed() {
 
     server.arm().await;
     let refused = server.refused(409, "PUT", "/api/v1/calibrations/1/activate", None).await;
-    assert!(refused.detail.contains("disarm first"), "{refused:?}");
+    assert!(refused.detail.contains("not while the machine is armed"), "{refused:?}");
     assert_eq!(x_of(&server), None);
 }
 

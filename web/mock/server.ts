@@ -144,6 +144,10 @@ export class MockServer {
       else reply(response, 200, detail);
     } else if (key === "GET config") {
       reply(response, 200, MOCK_CONFIG);
+    } else if (key === "GET calibrations") {
+      // No headset is connected here, so none is ever in the making.
+      if (second === "draft") problem(response, 404, "Not found", "no calibration is in the making: begin one first", undefined, { id: "no_calibration_draft" });
+      else reply(response, 200, []);
     } else if (key === "GET events") {
       this.#events(url, response);
     } else problem(response, 404, "Not found", `nothing is at ${url.pathname}`);

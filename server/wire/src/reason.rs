@@ -220,7 +220,7 @@ pub enum Reason {
         /// Why.
         refusal: CalibrationRefusal,
     },
-    /// Calibrate: not while the machine is armed or finds its switches.
+    /// Calibrate: not while the machine is armed, finds its switches or is moved by hand.
     NotWhileItMoves,
     /// Calibrate: none is in the making.
     NoCalibrationDraft,

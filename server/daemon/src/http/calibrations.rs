@@ -7,6 +7,7 @@ use axum::body::Bytes;
 use axum::extract::{Path, State};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use covr_engine::snapshot::Activity;
 use covr_wire::calibration::{
     Calibration, CalibrationDraft, CalibrationKind, CalibrationRefusal, CalibrationResult,
     CalibrationSummary, CalibrationTask, Measured, NewCalibrationPoint, PointOn,
@@ -257,8 +258,9 @@ async fn stored(app: &App, id: &str) -> Result<Calibration, Problem> {
 }
 
 fn check_at_rest(app: &App) -> Result<(), Problem> {
-    let mode = app.control.published().snapshot.mode;
-    if moves(mode) { Err(Problem::refused(Reason::NotWhileItMoves)) } else { Ok(()) }
+    let snapshot = &app.control.published().snapshot;
+    let is_free = !moves(snapshot.mode) && snapshot.column.activity != Activity::Jogged;
+    if is_free { Ok(()) } else { Err(Problem::refused(Reason::NotWhileItMoves)) }
 }
 
 /// The client of a task, where it can measure: connected, by itself under its name, with one person at most.

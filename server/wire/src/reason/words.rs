@@ -102,7 +102,7 @@ impl fmt::Display for Reason {
             ),
             Self::BadCalibration { refusal } => write!(f, "{refusal}"),
             Self::NotWhileItMoves => {
-                write!(f, "not while the machine is armed or finds its switches: disarm first")
+                write!(f, "not while the machine is armed, finds its switches or is moved by hand")
             }
             Self::NoCalibrationDraft => write!(f, "no calibration is in the making: begin one first"),
             Self::NoCalibrationPoint { point } => {

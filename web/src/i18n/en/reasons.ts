@@ -124,7 +124,7 @@ export const reasons: ReasonSentences = {
   calibration_outdated: ({ client, version, part, was, is }) =>
     `calibration ${version} of ${client} was made on other hardware: the ${hardwareParts[part]} was ${was} and is ${is}; calibrate anew`,
   bad_calibration: ({ refusal }, { number }) => refusalSentence(refusals, refusal, number),
-  not_while_it_moves: () => "not while the machine is armed or finds its switches: disarm first",
+  not_while_it_moves: () => "not while the machine is armed, finds its switches or is moved by hand",
   no_calibration_draft: () => "no calibration is in the making: begin one first",
   no_calibration_point: ({ point }) => `the calibration in the making has no point ${point}`,
   point_being_taken: () => "another point is being taken: wait for it",

@@ -124,7 +124,7 @@ export const reasons: ReasonSentences = {
   calibration_outdated: ({ client, version, part, was, is }) =>
     `le calibrage ${version} de ${client} a été fait sur un autre matériel (${hardwareParts[part]} : ${was} alors, ${is} maintenant) ; refaites-le`,
   bad_calibration: ({ refusal }, { number }) => refusalSentence(refusals, refusal, number),
-  not_while_it_moves: () => "pas tant que la machine est armée ou prend son origine : désarmez d’abord",
+  not_while_it_moves: () => "pas tant que la machine est armée, prend son origine ou est déplacée à la main",
   no_calibration_draft: () => "aucun calibrage n’est en cours : commencez-en un",
   no_calibration_point: ({ point }) => `le calibrage en cours n’a pas de point ${point}`,
   point_being_taken: () => "un autre point est en cours de mesure : attendez",
