@@ -107,7 +107,7 @@ fn in_words(model: &AxisModel, delays: &Delays, limit_amps: f64) -> String {
         delays.steps
     ));
     say(format!(
-        "command to motion  {} (likeness {:.3})",
+        "command to motion  {} (with the board's ramp and the axis's lag; likeness {:.3})",
         millis(delays.command_to_motion_secs),
         delays.likeness
     ));

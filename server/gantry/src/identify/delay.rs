@@ -5,7 +5,8 @@ use super::{Sample, half_secs, speed_at};
 /// Delays of a run; those that it does not show are none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Delays {
-    /// From a command to the motion that it asks for, s: where command and speed are most alike. Link, board and what the axis lags behind.
+    /// From a command to the motion that it asks for, s: where command and speed are most alike. Link, board, the ramp
+    /// that it puts in the place of a step, and what the axis lags behind.
     pub command_to_motion_secs: Option<f64>,
     /// How alike they are there, 0 to 1 (coefficient of determination).
     pub likeness: f64,
