@@ -66,6 +66,13 @@ impl Headset {
         at: impl Fn(f64) -> [f64; 3],
     ) -> (u16, Value) {
         let body = point.to_string();
+        // What was said before is heard before: no pose of the last place is still on its way.
+        self.pose(at(0.0)).await;
+        let client_time_micros = self.client.now_micros();
+        let ping =
+            json!({ "type": "clock_ping", "id": self.sequence, "client_time_micros": client_time_micros });
+        self.client.say(&ping).await;
+        self.client.hear("a pong", |m| matches!(m, ToClient::ClockPong(_)).then_some(())).await;
         let call = server.call("POST", "/api/v1/calibrations/draft/points", Some(&body));
         tokio::pin!(call);
         let began = std::time::Instant::now();

@@ -2,7 +2,7 @@
 import { expect, it } from "vitest";
 import { findings } from "./support/axe";
 import { Dashboard } from "./support/dashboard";
-import { Headset, type Place } from "./support/headset";
+import { Headset, uncalibrated, type Place } from "./support/headset";
 import { CovrServer } from "./support/server";
 import { until } from "./support/until";
 
@@ -73,13 +73,24 @@ it("guides from the first point to a calibration in force, and refuses what is b
   await dashboard.picture("calibration-french");
   expect(dashboard.complaints).toEqual([]);
 
+  /** On a busy computer poses come late or seldom: a point that is refused for that is taken again. */
   async function take(place: Place, really: Place, carried = false): Promise<void> {
+    const points = await page.getByTestId("calibration-point").count();
     await headset.put(really, carried);
-    for (const [axis, name] of ["x", "y", "z"].entries()) await page.getByTestId(`calibration-${name}`).fill(String(place[axis]));
-    await page.getByTestId("calibration-take").click();
-    await until("the point is measured", 10_000, async () => {
-      const said = await dashboard.says("calibration-said");
-      return said !== "" && !said.includes("Measuring");
+    const seen = uncalibrated(really);
+    await until("the server knows where the headset is", 10_000, () => {
+      const head = dashboard.now.persons[0]?.head_m ?? null;
+      return carried || (head !== null && Math.hypot(head[0] - seen[0], head[1] - seen[1], head[2] - seen[2]) < 0.01);
     });
+    for (const [axis, name] of ["x", "y", "z"].entries()) await page.getByTestId(`calibration-${name}`).fill(String(place[axis]));
+    for (let attempt = 0; attempt < 5; attempt += 1) {
+      await page.getByTestId("calibration-take").click();
+      await until("the point is measured", 10_000, async () => {
+        const said = await dashboard.says("calibration-said");
+        return said !== "" && !said.includes("Measuring");
+      });
+      if (carried || (await page.getByTestId("calibration-point").count()) > points) return;
+    }
+    throw new Error(`no point was taken: ${await dashboard.says("calibration-said")}`);
   }
 });

@@ -28,6 +28,13 @@ export class Headset {
   }
 }
 
+/** Where a client without a calibration is taken to be when it is at a place: its tracking space is taken for the room, m. */
+export function uncalibrated([x, y, z]: Place): Place {
+  const [fromX, fromY] = [x - 2, y - 1];
+  const [sin, cos] = [Math.sin(0.5), Math.cos(0.5)];
+  return [cos * fromX + sin * fromY, cos * fromY - sin * fromX, z - 0.1];
+}
+
 /** In the page: say hello, come in, and send where it is, in OpenXR's axes. */
 async function wear(name: string): Promise<void> {
   // Where its tracking space is in the room: turned by this about z, rad, then moved, m.
