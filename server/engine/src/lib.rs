@@ -16,6 +16,7 @@ pub mod observation;
 pub mod person;
 pub mod reason;
 pub mod safety;
+pub mod scenario;
 pub mod scene;
 pub mod snapshot;
 pub mod time;

@@ -5,14 +5,19 @@
 pub mod footprint;
 pub mod spec;
 mod surface;
+pub mod zone;
 
 use std::collections::HashMap;
 
 use crate::frames::{Floor, Planar, Point, Pose, Room};
 use crate::machine::Travel;
+use crate::scenario::{Finding, Names, Scenario, Stage};
 use footprint::{Footprint, KeepOut};
-pub use spec::{KeepOutShape, KeepOutSpec, ObjectSpec, PropSpec, ScenePart, SceneProblem, SceneSpec, Shape};
+pub use spec::{
+    KeepOutShape, KeepOutSpec, ObjectSpec, PropSpec, ScenePart, SceneProblem, SceneSpec, Shape, ZoneSpec,
+};
 use surface::Surface;
+use zone::Zone;
 
 /// A scene, right once built.
 #[derive(Debug)]
@@ -21,6 +26,9 @@ pub struct Scene {
     objects: Vec<Object>,
     footprint: Footprint,
     keep_outs: Vec<KeepOut>,
+    zones: Vec<Zone>,
+    scenario: Option<Scenario>,
+    enabled: Vec<bool>,
 }
 
 /// An object of interest with its surface.
@@ -44,7 +52,10 @@ impl Scene {
             objects.extend(build_object(i, object, &spec, &mut problems));
         }
         for (i, keep_out) in spec.keep_outs.iter().enumerate() {
-            check_keep_out(ScenePart::KeepOut(i), &keep_out.shape, &mut problems);
+            check_shape(ScenePart::KeepOut(i), &keep_out.shape, &mut problems);
+        }
+        for (i, zone) in spec.zones.iter().enumerate() {
+            check_shape(ScenePart::Zone(i), &zone.shape, &mut problems);
         }
         if !(1..=MOST_OBJECTS).contains(&spec.objects.len()) {
             let found = format!("{} objects", spec.objects.len());
@@ -56,12 +67,15 @@ impl Scene {
             ));
         }
         check_ids(&spec, &mut problems);
+        let scenario = build_scenario(&spec, &mut problems);
         if !problems.is_empty() {
             return Err(problems);
         }
         let footprint = Footprint::new(spec.column_size_m, &spec.props);
         let keep_outs = spec.keep_outs.iter().map(|k| KeepOut::new(&k.shape, &footprint)).collect();
-        Ok(Self { spec, objects, footprint, keep_outs })
+        let zones = spec.zones.iter().map(|zone| Zone::new(&zone.shape)).collect();
+        let enabled = spec.objects.iter().map(|object| object.enabled).collect();
+        Ok(Self { spec, objects, footprint, keep_outs, zones, scenario, enabled })
     }
 
     /// What it was built from.
@@ -84,9 +98,37 @@ impl Scene {
         &self.keep_outs
     }
 
-    /// From a head to the nearest surface of any enabled object, m; infinite without one.
+    /// The zones, in the scene's order.
+    pub fn zones(&self) -> &[Zone] {
+        &self.zones
+    }
+
+    /// The scenario.
+    pub fn scenario(&self) -> Option<&Scenario> {
+        self.scenario.as_ref()
+    }
+
+    /// What is worth a second look in the scenario.
+    pub fn findings(&self) -> Vec<Finding> {
+        let (objects, zones) = ids(&self.spec);
+        let priors: Vec<f64> = self.spec.objects.iter().map(|object| object.prior).collect();
+        let stage = Stage { objects: &objects, zones: &zones, priors: &priors };
+        self.scenario.as_ref().map_or_else(Vec::new, |scenario| scenario.findings(stage))
+    }
+
+    /// Which objects can be served as the scene itself has it, scenario apart.
+    pub fn enabled(&self) -> &[bool] {
+        &self.enabled
+    }
+
+    /// From a head to the nearest surface of any object that the scene itself enables, m; infinite without one.
     pub fn nearest_enabled_object_m(&self, head: &Point<Room>) -> f64 {
-        let enabled = self.objects.iter().zip(&self.spec.objects).filter(|(_, spec)| spec.enabled);
+        self.nearest_object_m(head, &self.enabled)
+    }
+
+    /// From a head to the nearest surface of any of these objects, m; infinite without one.
+    pub fn nearest_object_m(&self, head: &Point<Room>, of: &[bool]) -> f64 {
+        let enabled = self.objects.iter().zip(of).filter(|(_, enabled)| **enabled);
         enabled.fold(f64::INFINITY, |nearest, (object, _)| {
             // Far objects are not asked for their surface: it is no nearer than the ball about it.
             if object.surface.at_least_m(head) > nearest {
@@ -175,7 +217,7 @@ fn check_prop(part: ScenePart, prop: &PropSpec, problems: &mut Vec<SceneProblem>
     }
 }
 
-fn check_keep_out(part: ScenePart, shape: &KeepOutShape, problems: &mut Vec<SceneProblem>) {
+fn check_shape(part: ScenePart, shape: &KeepOutShape, problems: &mut Vec<SceneProblem>) {
     match shape {
         KeepOutShape::Circle { centre, radius_m } => {
             if !centre.is_finite() {
@@ -212,11 +254,33 @@ fn check_rectangle(
     }
 }
 
+/// The ids of objects and zones.
+fn ids(spec: &SceneSpec) -> (Vec<&str>, Vec<&str>) {
+    let objects = spec.objects.iter().map(|object| object.id.as_str());
+    (objects.collect(), spec.zones.iter().map(|zone| zone.id.as_str()).collect())
+}
+
+fn build_scenario(spec: &SceneSpec, problems: &mut Vec<SceneProblem>) -> Option<Scenario> {
+    let (objects, zones) = ids(spec);
+    let built = Scenario::build(spec.scenario.as_ref()?, Names { objects: &objects, zones: &zones });
+    built
+        .map_err(|found| {
+            problems.extend(found.into_iter().map(|p| SceneProblem {
+                part: ScenePart::Scenario,
+                key: p.path,
+                found: p.found,
+                expected: p.expected,
+            }));
+        })
+        .ok()
+}
+
 fn check_ids(spec: &SceneSpec, problems: &mut Vec<SceneProblem>) {
-    let groups: [Vec<(ScenePart, &str)>; 3] = [
+    let groups: [Vec<(ScenePart, &str)>; 4] = [
         spec.props.iter().enumerate().map(|(i, p)| (ScenePart::Prop(i), p.id.as_str())).collect(),
         spec.objects.iter().enumerate().map(|(i, o)| (ScenePart::Object(i), o.id.as_str())).collect(),
         spec.keep_outs.iter().enumerate().map(|(i, k)| (ScenePart::KeepOut(i), k.id.as_str())).collect(),
+        spec.zones.iter().enumerate().map(|(i, z)| (ScenePart::Zone(i), z.id.as_str())).collect(),
     ];
     for group in groups {
         let mut seen = HashMap::new();
@@ -240,7 +304,7 @@ fn problem(part: ScenePart, key: &str, found: String, expected: String) -> Scene
 const MOST_OBJECTS: usize = 500;
 
 impl SceneSpec {
-    /// An arena without props or keep-outs and with the paper's 15 cm column: where replays and tests begin.
+    /// An arena without props, keep-outs or scenario, and with the paper's 15 cm column: where replays and tests begin.
     pub fn open(arena: Travel, objects: Vec<ObjectSpec>) -> Self {
         Self {
             arena,
@@ -248,6 +312,8 @@ impl SceneSpec {
             props: Vec::new(),
             objects,
             keep_outs: Vec::new(),
+            zones: Vec::new(),
+            scenario: None,
         }
     }
 }

@@ -129,7 +129,7 @@ pub fn is_convex(corners: &[Floor]) -> bool {
 }
 
 /// From the nearest point of a convex counter-clockwise polygon to `point`; zero inside.
-fn gap_to_convex(polygon: &[Floor], point: Floor) -> Planar {
+pub(super) fn gap_to_convex(polygon: &[Floor], point: Floor) -> Planar {
     let mut inside = true;
     let mut nearest = Planar::new(f64::INFINITY, f64::INFINITY);
     for (i, a) in polygon.iter().enumerate() {
@@ -146,7 +146,7 @@ fn gap_to_convex(polygon: &[Floor], point: Floor) -> Planar {
 }
 
 /// Andrew's monotone chain, counter-clockwise, corners on an edge left out.
-fn convex_hull(mut points: Vec<Floor>) -> Vec<Floor> {
+pub(super) fn convex_hull(mut points: Vec<Floor>) -> Vec<Floor> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
     let half = |points: &mut dyn Iterator<Item = Floor>| {

@@ -2,6 +2,7 @@
 
 use crate::frames::{Floor, Planar, Point, Room};
 use crate::machine::Travel;
+use crate::scenario::ScenarioSpec;
 
 /// A scene as described, not yet checked. Lengths in metres, angles in radians, room frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,10 @@ pub struct SceneSpec {
     pub objects: Vec<ObjectSpec>,
     /// Where the column must never go.
     pub keep_outs: Vec<KeepOutSpec>,
+    /// Places on the floor that the scenario knows people to be in.
+    pub zones: Vec<ZoneSpec>,
+    /// What can be served when; none: everything enabled, always.
+    pub scenario: Option<ScenarioSpec>,
 }
 
 /// A prop.
@@ -93,6 +98,15 @@ pub struct KeepOutSpec {
     pub shape: KeepOutShape,
 }
 
+/// A place on the floor that somebody can be in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ZoneSpec {
+    /// Unique in the scene.
+    pub id: String,
+    /// Its shape.
+    pub shape: KeepOutShape,
+}
+
 /// A shape on the floor.
 #[derive(Debug, Clone, PartialEq)]
 pub enum KeepOutShape {
@@ -139,6 +153,10 @@ pub enum ScenePart {
     Object(usize),
     /// A keep-out shape.
     KeepOut(usize),
+    /// A zone.
+    Zone(usize),
+    /// The scenario.
+    Scenario,
 }
 
 impl std::fmt::Display for ScenePart {
@@ -150,6 +168,8 @@ impl std::fmt::Display for ScenePart {
             Self::Prop(i) => write!(f, "props[{i}]"),
             Self::Object(i) => write!(f, "objects[{i}]"),
             Self::KeepOut(i) => write!(f, "keep_outs[{i}]"),
+            Self::Zone(i) => write!(f, "zones[{i}]"),
+            Self::Scenario => write!(f, "scenario"),
         }
     }
 }

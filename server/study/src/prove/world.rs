@@ -166,7 +166,15 @@ fn spec(random: &mut Random, arena: Travel, travel: Travel) -> SceneSpec {
     });
     let keep_outs = keep_outs.collect();
     let side = random.between(0.1, 0.3);
-    SceneSpec { arena, column_size_m: Planar::new(side, random.between(0.1, 0.3)), props, objects, keep_outs }
+    SceneSpec {
+        arena,
+        column_size_m: Planar::new(side, random.between(0.1, 0.3)),
+        props,
+        objects,
+        keep_outs,
+        zones: Vec::new(),
+        scenario: None,
+    }
 }
 
 fn shape(random: &mut Random) -> Shape {

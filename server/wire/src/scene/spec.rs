@@ -43,6 +43,8 @@ pub(super) fn spec(document: &SceneDocument) -> SceneSpec {
             .iter()
             .map(|keep_out| KeepOutSpec { id: keep_out.id.clone(), shape: keep_out_shape(&keep_out.shape) })
             .collect(),
+        zones: Vec::new(),
+        scenario: None,
     }
 }
 
@@ -55,6 +57,8 @@ pub(super) fn error(problem: &SceneProblem) -> SceneError {
         ScenePart::Prop(i) => format!("$.props[{i}]"),
         ScenePart::Object(i) => format!("$.objects[{i}]"),
         ScenePart::KeepOut(i) => format!("$.keep_outs[{i}]"),
+        ScenePart::Zone(i) => format!("$.zones[{i}]"),
+        ScenePart::Scenario => "$.scenario".to_owned(),
     };
     if !problem.key.is_empty() {
         path.push('.');
