@@ -20,6 +20,7 @@ mod person;
 mod priors;
 mod record;
 mod roles;
+mod scenario;
 mod scenes;
 mod schemathesis;
 mod sessions;

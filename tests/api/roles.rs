@@ -213,7 +213,10 @@ fn types_of_requests() -> Vec<MachineRequest> {
     let schema = schemars::schema_for!(MachineRequest).to_value();
     let variants = schema["oneOf"].as_array().unwrap().clone();
     let values = variants.iter().flat_map(|variant| match variant["properties"].as_object() {
-        Some(fields) => fields.keys().map(|name| json!({ name: 3 })).collect(),
+        Some(fields) => fields
+            .iter()
+            .map(|(name, about)| json!({ name: if about["type"] == "string" { json!("x") } else { json!(3) } }))
+            .collect::<Vec<_>>(),
         None => match (&variant["const"], &variant["enum"]) {
             (Value::String(name), _) => vec![json!(name)],
             (_, Value::Array(names)) => names.clone(),

@@ -5,7 +5,7 @@ use covr_tests::server::TestServer;
 use covr_wire::dashboard::ToDashboard;
 
 const KITCHEN: &str = r#"{
-  "schema": "covr.scene.v1", "name": "Kitchen",
+  "schema": "covr.scene.v2", "name": "Kitchen",
   "arena": { "min": [0, 0], "max": [4, 4] },
   "objects": [
     { "id": "kettle", "position": [1, 1, 1], "shape": { "kind": "sphere", "radius": 0.1 }, "prior": 0.5 },

@@ -2,6 +2,7 @@
 //!
 //! A failure names the least command that shows it.
 
+mod played;
 mod served;
 
 use covr_study::prove::{Campaign, Case, prove, run};

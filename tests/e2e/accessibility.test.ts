@@ -1,4 +1,5 @@
 /** No view has a serious or critical finding of axe-core: both themes, both languages, laptop and tablet, dialogs open too. */
+import { readFile } from "node:fs/promises";
 import axe from "axe-core";
 import { beforeAll, describe, expect, it } from "vitest";
 import { findings } from "./support/axe";
@@ -6,7 +7,7 @@ import { Dashboard } from "./support/dashboard";
 import { CovrServer } from "./support/server";
 import { until } from "./support/until";
 
-const VIEWS = ["live", "scenes", "sessions", "machine", "settings", "help"] as const;
+const VIEWS = ["live", "scenario", "scenes", "sessions", "machine", "settings", "help"] as const;
 const SIZES = [
   { name: "laptop", width: 1366, height: 768 },
   { name: "tablet on its side", width: 1180, height: 820 },
@@ -25,6 +26,7 @@ describe("the page", () => {
     ["light", "fr"],
   ] as const)("has no serious finding in any view, %s, %s", { timeout: 240_000 }, async (theme, language) => {
     const server = await CovrServer.start();
+    await server.useScene(JSON.parse(await readFile(new URL("../../deploy/scenes/escape-room.json", import.meta.url), "utf8")));
     const dashboard = await opened(server, theme, language);
     await dashboard.homeAndArm();
     server.visitor("--seed", "5");
@@ -81,6 +83,6 @@ async function opened(server: CovrServer, theme: "dark" | "light", language: "en
 
 async function show(dashboard: Dashboard, view: (typeof VIEWS)[number]): Promise<void> {
   await dashboard.page.getByTestId(`view-${view}`).click();
-  const sign = { live: "arm", scenes: "scenes", sessions: "sessions", machine: "machine-axis-x", settings: "config", help: "help-R1" }[view];
+  const sign = { live: "arm", scenario: "state-graph", scenes: "scenes", sessions: "sessions", machine: "machine-axis-x", settings: "config", help: "help-R1" }[view];
   await dashboard.page.getByTestId(sign).waitFor({ timeout: 10_000 });
 }

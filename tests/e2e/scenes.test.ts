@@ -109,7 +109,7 @@ it("shows where a bad scene is bad, has it mended there, and stores, shows, acti
 });
 
 it("says where a file that is no JSON breaks off", async () => {
-  await drop("torn.json", '{\n  "schema": "covr.scene.v1",\n  "name": ');
+  await drop("torn.json", '{\n  "schema": "covr.scene.v2",\n  "name": ');
   await dashboard.page.getByTestId("upload-refused").waitFor({ timeout: 5_000 });
   expect(await dashboard.says("draft")).toContain("torn.json");
   expect(await dashboard.page.getByTestId("scene-error").textContent()).toContain("line 3");

@@ -57,7 +57,7 @@ describe("theme and language", () => {
 
 describe("the keyboard", () => {
   it("leads everywhere, does nothing while somebody types, and never moves the machine by itself", async () => {
-    for (const [key, view] of [["2", "scenes"], ["3", "sessions"], ["4", "machine"], ["5", "settings"], ["6", "help"], ["1", "live"]] as const) {
+    for (const [key, view] of [["2", "scenario"], ["3", "scenes"], ["4", "sessions"], ["5", "machine"], ["6", "settings"], ["7", "help"], ["1", "live"]] as const) {
       await dashboard.page.keyboard.press(key);
       await until(`the view ${view}`, 5_000, async () => (await dashboard.page.getByTestId(`view-${view}`).getAttribute("aria-current")) === "page");
     }
@@ -67,7 +67,7 @@ describe("the keyboard", () => {
     await dashboard.page.keyboard.press("t");
     expect(await wears()).toEqual(["light", "en"]);
 
-    await dashboard.page.keyboard.press("5");
+    await dashboard.page.keyboard.press("6");
     // A browser changes the view a moment after the key: the next one is for the view that comes.
     await dashboard.page.getByTestId("config-people.v_h_mps").waitFor();
     await dashboard.page.keyboard.press("h");

@@ -135,7 +135,7 @@ fn the_command_line_refuses_what_it_must() {
     assert!(!dir.path().join("covr.sqlite").exists());
 
     let scene = dir.path().join("scene.json");
-    std::fs::write(&scene, "{\n \"schema\": \"covr.scene.v1\",\n \"name\": 3\n}").unwrap();
+    std::fs::write(&scene, "{\n \"schema\": \"covr.scene.v2\",\n \"name\": 3\n}").unwrap();
     let (code, words) = run(&["check", scene.to_str().unwrap()]);
     assert_eq!(code, Some(1));
     assert!(words.contains("line 3") && words.contains("$.name"), "{words}");

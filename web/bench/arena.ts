@@ -33,7 +33,7 @@ function mesh(): ObjectDocument["shape"] {
 }
 
 const scene: SceneDocument = {
-  schema: "covr.scene.v1",
+  schema: "covr.scene.v2",
   name: "bench",
   arena: { min: [0, 0], max: [10, 10] },
   column: { size: [0.15, 0.15] },

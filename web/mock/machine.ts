@@ -82,6 +82,9 @@ export class MockMachine {
       this.event("request_refused", detail);
       return { outcome: "refused", detail, why: { id: "person_still_tracked", person: "Ada" } };
     }
+    if (request === "rewind" || (typeof request === "object" && !("confirm_origin" in request))) {
+      return { outcome: "refused", detail: "the active scene has no scenario", why: { id: "no_scenario" } };
+    }
     if (typeof request === "object") {
       this.#awaitsConfirmation = false;
       this.event("request_accepted", `person ${request.confirm_origin} stands on the floor mark`);
@@ -219,6 +222,7 @@ export class MockMachine {
         },
       ],
       objects,
+      scenario: null,
       intention_rule: "bayes",
       standing: "in-time",
       motion: "planner",
@@ -334,6 +338,7 @@ export class MockMachine {
         weight: object.enabled ? prior * (0.175 / (1 + away) + 0.825 * looked) : 0,
         probability: 0,
         prior,
+        enabled: object.enabled,
         column_place_m: place,
         arrival_secs: arrivalSecs,
         touch_secs: touchSecs,

@@ -11,7 +11,7 @@ export const MACHINE_SHAPE: MachineShape = {
 
 /** A room with a panel, a lamp, doors and a table in the way. */
 export const MOCK_SCENE: SceneDocument = {
-  schema: "covr.scene.v1",
+  schema: "covr.scene.v2",
   name: "Dark room",
   description: "For development of the dashboard.",
   arena: { min: [0, 0], max: [4, 4] },

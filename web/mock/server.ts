@@ -193,10 +193,10 @@ export class MockServer {
     const checked = checkScene(body);
     if ("errors" in checked) {
       problem(response, 422, "Scene refused", `${checked.errors.length} finding(s)`, checked.errors);
-    } else if (id === null) reply(response, 200, { valid: true, name: checked.scene.name, objects: checked.scene.objects.length });
+    } else if (id === null) reply(response, 200, { valid: true, name: checked.scene.name, objects: checked.scene.objects.length, warnings: [] });
     else {
       const stored = this.#store(checked.scene, author, id);
-      reply(response, 201, { id: stored.id, version: stored.version });
+      reply(response, 201, { id: stored.id, version: stored.version, warnings: [] });
     }
   }
 

@@ -80,7 +80,8 @@ function record(): readonly RecordedFrame[] {
       mode,
       column: { position_m, velocity_mps, commanded_m, proxy_m, target_m, serves, committed, activity, homed },
       persons: persons.map(({ id, name, head_m, yaw_rad, pitch_rad, tracked, separation_radius_m, distance_m, required_m }) => ({ id, name, head_m, yaw_rad, pitch_rad, tracked, separation_radius_m, distance_m, required_m })),
-      objects: objects.map(({ id, weight, probability, prior }) => ({ id, weight, probability, prior })),
+      objects: objects.map(({ id, weight, probability, prior, enabled }) => ({ id, weight, probability, prior, enabled })),
+      scenario: null,
     };
   });
 }

@@ -10,6 +10,7 @@ import "./style/desk.css";
 import "./style/decisions.css";
 import "./style/weights.css";
 import "./style/timeline.css";
+import "./style/scenario.css";
 import "./style/records.css";
 import "./style/scenes.css";
 import "./style/sessions.css";

@@ -177,6 +177,30 @@ impl App {
         clients.iter().find_map(|client| self.calibrations.outdated(&client.name, &client.convention, &now))
     }
 
+    /// A game master gives the scenario a cue.
+    pub async fn cue(&self, asker: &Asker, name: String) -> Result<Answer, NotDelivered> {
+        let detail = json!({ "request": "cue", "cue": name });
+        self.ask_recorded(asker, &format!("cue {name}"), Request::Cue(name.clone()), detail).await
+    }
+
+    /// A game master skips to a state of the scenario.
+    pub async fn skip_to(
+        &self,
+        asker: &Asker,
+        state: String,
+        reason: String,
+    ) -> Result<Answer, NotDelivered> {
+        let detail = json!({ "request": "skip_to", "state": state, "reason": reason });
+        let name = format!("skip to {state}");
+        self.ask_recorded(asker, &name, Request::SkipTo(state, reason), detail).await
+    }
+
+    /// A game master goes back in the scenario.
+    pub async fn rewind(&self, asker: &Asker, reason: String) -> Result<Answer, NotDelivered> {
+        let detail = json!({ "request": "rewind", "reason": reason });
+        self.ask_recorded(asker, "rewind", Request::Rewind(reason), detail).await
+    }
+
     /// The reason of an answer, with what the clients call the persons.
     pub fn reason(&self, answer: &Answer) -> Reason {
         Reason::new(&answer.reason, &self.persons.names())

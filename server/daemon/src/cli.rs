@@ -33,7 +33,7 @@ pub struct Cli {
 pub enum Command {
     /// Run the server.
     Serve(Serve),
-    /// Check a scene file and say what is wrong with it; exit code 1 if anything is.
+    /// Check a scene file and say what is wrong with it and what is worth a second look; exit code 1 if anything is wrong.
     Check(Check),
     /// Play a person as a VR client: recorded with --trace, else made up.
     Visitor(Visitor),
@@ -86,6 +86,9 @@ pub struct Serve {
 pub struct Check {
     /// The scene.
     pub scene: PathBuf,
+    /// Say it as JSON on standard output, with the seconds that the column needs from each object to each other.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Ask a running server.

@@ -15,6 +15,7 @@ mod machine;
 mod openapi;
 mod priors;
 mod problem;
+mod scenario;
 mod scenes;
 mod sessions;
 mod timing;
@@ -55,6 +56,7 @@ pub fn router(app: Arc<App>) -> Router {
                 "/api/v1",
                 machine::routes()
                     .merge(scenes::routes())
+                    .merge(scenario::routes())
                     .merge(priors::routes())
                     .merge(sessions::routes())
                     .merge(config::routes())

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use anyhow::Context;
 use clap::Parser;
+use covr_engine::placing::serve_secs;
 use covr_server::cli::{Check, Cli, Command, Health, Serve, Visitor};
 use covr_server::commission::{self, Commission};
 use covr_server::config::{self, Config};
@@ -15,7 +16,7 @@ use covr_server::visitor::credentials::Credentials;
 use covr_server::{
     cert_command, emulate, evaluate, explain, fit, identify, logs, prove, token_command, visitor,
 };
-use covr_wire::scene::parse_scene;
+use covr_wire::scene::{parse_scene, scene_warnings};
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -114,22 +115,42 @@ fn check(options: &Check) -> ExitCode {
             return ExitCode::from(FAILED);
         }
     };
-    match parse_scene(&text) {
-        Ok((document, _)) => {
-            let _ = print(&format!(
-                "{name}: \"{}\" is good: {} objects\n",
-                document.name,
-                document.objects.len()
-            ));
-            ExitCode::SUCCESS
-        }
-        Err(errors) => {
-            for error in errors {
-                complain(&format!("{name}: {error}"));
-            }
-            ExitCode::from(INVALID)
-        }
+    let machine = Config::default().machine;
+    let read = parse_scene(&text);
+    let warnings = read
+        .as_ref()
+        .map_or_else(|_| Vec::new(), |(_, scene)| scene_warnings(&text, scene, &machine.travel()));
+    let code = if read.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(INVALID) };
+    if options.json {
+        let secs = read.as_ref().ok().map(|(_, scene)| serve_secs(scene, &machine.limits()));
+        let (document, errors) = match read {
+            Ok((document, _)) => (Some(document), Vec::new()),
+            Err(errors) => (None, errors),
+        };
+        let said = serde_json::json!({
+            "scene": name.to_string(),
+            "valid": document.is_some(),
+            "name": document.as_ref().map(|document| &document.name),
+            "objects": document.as_ref().map(|document| document.objects.len()),
+            "serve_secs": secs,
+            "errors": errors,
+            "warnings": warnings,
+        });
+        return print(&format!("{said:#}\n")).map_or(ExitCode::from(FAILED), |()| code);
     }
+    match read {
+        Ok((document, _)) => {
+            for warning in &warnings {
+                complain(&format!("{name}: warning: {warning}"));
+            }
+            let objects = document.objects.len();
+            let states =
+                document.scenario.map_or_else(String::new, |s| format!(", {} states", s.states.len()));
+            let _ = print(&format!("{name}: \"{}\" is good: {objects} objects{states}\n", document.name));
+        }
+        Err(errors) => errors.iter().for_each(|error| complain(&format!("{name}: {error}"))),
+    }
+    code
 }
 
 fn runtime() -> anyhow::Result<tokio::runtime::Runtime> {

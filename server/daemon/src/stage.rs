@@ -147,6 +147,10 @@ impl Stage {
     ) -> Result<(), NotDelivered> {
         let mut priors = self.priors.lock().await;
         let active = self.active();
+        if active.scene.scenario().is_some() {
+            // They were set against a state of a run that is over.
+            return Ok(());
+        }
         let known: Vec<(usize, f64)> =
             stored.iter().filter_map(|(object, prior)| Some((active.index_of(object)?, *prior))).collect();
         if known.is_empty() {
@@ -172,6 +176,13 @@ impl Stage {
         let mut priors = self.priors.lock().await;
         let active = self.active();
         let to_set = read_priors(wanted, |object| active.index_of(object)).map_err(PriorsRefused::Invalid)?;
+        if active.scene.scenario().is_some() {
+            // The scenario changes them too; what was answered last is published.
+            let published = control.published();
+            if Arc::ptr_eq(&published.scene, &active.scene) {
+                *priors = published.outlook.priors().to_vec();
+            }
+        }
         let Answer { outcome, reason } = control.ask(Request::SetPriors(to_set.clone())).await?;
         if outcome == Outcome::Refused {
             return Err(PriorsRefused::Refused(reason));

@@ -1,7 +1,7 @@
 //! The engine: observe, request, step. It owns no clock; the caller says when it is.
 //!
-//! One step: the supervisor looks at every rule and may change the mode; the intention of every visitor is weighed;
-//! the mode says what the machine does; in `following` motion proposes and safety disposes.
+//! One step: the supervisor looks at every rule and may change the mode; the intention of every visitor is weighed; the scenario goes
+//! on; the mode says what the machine does; in `following` motion proposes and safety disposes.
 
 mod braking;
 mod following;
@@ -9,6 +9,7 @@ mod foretold;
 mod jogging;
 mod modes;
 pub mod outlook;
+mod playing;
 mod requests;
 mod view;
 
@@ -29,11 +30,12 @@ use crate::safety::path::State;
 use crate::safety::separation::{KeptFrom, Separation, Threat};
 use crate::safety::supervisor::Supervisor;
 use crate::safety::vetted::Vetted;
+use crate::scenario::Play;
 use crate::scene::Scene;
 use crate::snapshot::{RuleId, StopCause};
 use crate::time::{Span, Time};
 use braking::Braking;
-use following::Following;
+use following::{Following, Offer};
 pub use following::{IN_PLACE_M, IN_PLACE_MPS};
 pub use foretold::Foretold;
 use jogging::Jog;
@@ -72,7 +74,17 @@ pub struct Engine {
     config: EngineConfig,
     parameters: Parameters,
     scene: Arc<Scene>,
+    /// Priors in force.
     priors: Vec<f64>,
+    /// Those that a game master set against the scenario, until the state is left.
+    prior_edits: Vec<Option<f64>>,
+    /// Which objects can be served now.
+    enabled: Vec<bool>,
+    /// Which objects a head is near to, for the separation rule: those enabled, and those that were when the column began to move.
+    near: Vec<bool>,
+    play: Option<Play>,
+    /// The last step in which the scenario's clock ran.
+    played_at: Option<Time>,
     mode: Mode,
     mode_since: Time,
     /// Where a protective stop goes back to.
@@ -107,7 +119,12 @@ impl Engine {
         let parameters = Parameters::new(config.v_h_mps);
         let mut engine = Self {
             parameters,
-            priors: scene.spec().objects.iter().map(|o| o.prior).collect(),
+            priors: Vec::new(),
+            prior_edits: Vec::new(),
+            enabled: Vec::new(),
+            near: Vec::new(),
+            play: None,
+            played_at: None,
             mode: Mode::Disarmed,
             mode_since: Time::ZERO,
             resumes: Mode::Following,
@@ -134,9 +151,10 @@ impl Engine {
             braking: None,
             events: Vec::new(),
             pending: Vec::new(),
-            scene,
+            scene: Arc::clone(&scene),
             config,
         };
+        engine.set_the_stage(scene);
         if let Some(record) = engine.config.latched_because.clone() {
             engine.latch(RuleId(4), Reason::LastRunLatched(record), Time::ZERO);
         }
@@ -156,10 +174,12 @@ impl Engine {
             Observation::PersonLeft(id) => self.leave(id),
             Observation::Pose(id, sample) => {
                 if let Some(person) = self.persons.iter_mut().find(|p| p.id() == id) {
-                    person.take_pose(sample, &self.scene, &self.parameters);
+                    person.take_pose(sample, &self.scene, &self.near, &self.parameters);
                 }
             }
             Observation::OriginChanged(id) => self.with_person(id, Person::origin_changed),
+            Observation::TouchBegan(id, object) => self.touched(id, &object, true),
+            Observation::TouchEnded(id, object) => self.touched(id, &object, false),
             Observation::ClientGone(id) => self.with_person(id, |p| p.set_client_present(false)),
             Observation::ClientBack(id) => self.with_person(id, |p| p.set_client_present(true)),
             Observation::Machine(report) => {
@@ -181,6 +201,7 @@ impl Engine {
 
     /// Decide what the machine does until the next step.
     pub fn step(&mut self, now: Time) -> Vetted {
+        self.update_near(now);
         for person in &mut self.persons {
             person.update_zones(now, &self.parameters);
         }
@@ -193,15 +214,10 @@ impl Engine {
         self.progress_homing(now);
         self.keep_up_with_the_machine(now);
         let jog = self.jog_now(now);
+        let offer = Offer { scene: &self.scene, priors: &self.priors, enabled: &self.enabled };
+        let wish = self.following.wanted(&self.persons, &offer, now, &self.parameters, &self.config.limits);
+        self.play(now);
         let config = &self.config;
-        let wish = self.following.wanted(
-            &self.persons,
-            &self.scene,
-            &self.priors,
-            now,
-            &self.parameters,
-            &config.limits,
-        );
         let command = match self.mode {
             Mode::Disarmed | Mode::LatchedStop | Mode::Faulted => self.stop_and_release(now),
             Mode::Homing if self.may_home() => Vetted::home(now),
@@ -275,6 +291,11 @@ impl Engine {
     /// The priors in force, by object.
     pub fn priors(&self) -> &[f64] {
         &self.priors
+    }
+
+    /// Which objects can be served now.
+    pub fn enabled(&self) -> &[bool] {
+        &self.enabled
     }
 
     /// What it was built with.

@@ -1,5 +1,7 @@
 //! What happened, for the record: every change of mode, every rule breached or cleared, every act.
 
+use std::sync::Arc;
+
 use crate::frames::{Floor, Planar};
 use crate::mode::Mode;
 use crate::observation::PersonId;
@@ -75,4 +77,43 @@ pub enum EventKind {
         /// Why.
         because: Reason,
     },
+    /// The scenario entered a state.
+    StateEntered {
+        /// The state before; none: a run begins.
+        from: Option<Arc<str>>,
+        /// The state.
+        to: Arc<str>,
+        /// Why.
+        why: WhyState,
+    },
+    /// The scenario's transitions went in a circle, and wait in this state for something to happen.
+    ScenarioCut {
+        /// The state.
+        state: Arc<str>,
+    },
+}
+
+/// Why a state of the scenario was entered, by ids.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WhyState {
+    /// The machine was armed: the run begins.
+    Began,
+    /// The condition of a transition held.
+    ConditionHeld,
+    /// A person touched the object.
+    TouchBegan(PersonId, String),
+    /// A person let go of the object.
+    TouchEnded(PersonId, String),
+    /// A person came into the zone.
+    ZoneEntered(PersonId, String),
+    /// A person went out of the zone.
+    ZoneLeft(PersonId, String),
+    /// A VR client said this.
+    ClientEvent(String),
+    /// A game master gave this cue.
+    Cue(String),
+    /// A game master skipped, for this reason.
+    Skipped(String),
+    /// A game master went back, for this reason.
+    Rewound(String),
 }

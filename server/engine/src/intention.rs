@@ -161,18 +161,17 @@ impl RuleName {
 }
 
 /// The objects as a head has them, into a reused buffer.
-pub fn sights(scene: &Scene, priors: &[f64], head: &Pose<Room>, out: &mut Vec<Sight>) {
+pub fn sights(scene: &Scene, priors: &[f64], enabled: &[bool], head: &Pose<Room>, out: &mut Vec<Sight>) {
     out.clear();
-    out.extend(scene.objects().iter().zip(&scene.spec().objects).zip(priors).map(
-        |((object, spec), prior)| Sight {
-            distance_m: object.distance_m(&head.position),
-            angle_rad: object.angle_rad(head),
-            offset: spec.position.floor() - head.position.floor(),
-            rise_m: spec.position.z() - head.position.z(),
-            prior: *prior,
-            enabled: spec.enabled,
-        },
-    ));
+    let objects = scene.objects().iter().zip(&scene.spec().objects);
+    out.extend(objects.zip(priors.iter().zip(enabled)).map(|((object, spec), (prior, enabled))| Sight {
+        distance_m: object.distance_m(&head.position),
+        angle_rad: object.angle_rad(head),
+        offset: spec.position.floor() - head.position.floor(),
+        rise_m: spec.position.z() - head.position.z(),
+        prior: *prior,
+        enabled: *enabled,
+    }));
 }
 
 /// When a hand could be at an object, s from now: the way left at the pace kept, and a start if the visitor stands.

@@ -14,6 +14,7 @@ pub mod mode;
 pub mod motion;
 pub mod observation;
 pub mod person;
+pub mod placing;
 pub mod reason;
 pub mod safety;
 pub mod scenario;

@@ -57,6 +57,10 @@ pub enum Observation {
     Pose(PersonId, PoseSample),
     /// The tracking origin moved: recentre, relocalisation, headset off and on (R15).
     OriginChanged(PersonId),
+    /// A hand of this person met the object of this id.
+    TouchBegan(PersonId, Arc<str>),
+    /// And let go of it.
+    TouchEnded(PersonId, Arc<str>),
     /// The client of this person is gone without a word (R10); the person is still there.
     ClientGone(PersonId),
     /// The client of this person is back.

@@ -56,8 +56,8 @@ impl Person {
         }
     }
 
-    /// Take a pose; one that is not newer than the last is dropped.
-    pub fn take_pose(&mut self, sample: PoseSample, scene: &Scene, parameters: &Parameters) {
+    /// Take a pose; one that is not newer than the last is dropped. `near` says which objects a head may be near to.
+    pub fn take_pose(&mut self, sample: PoseSample, scene: &Scene, near: &[bool], parameters: &Parameters) {
         if let Some(before) = self.newest {
             let elapsed = (sample.taken_at - before.taken_at).secs();
             if elapsed <= 0.0 {
@@ -80,13 +80,13 @@ impl Person {
             self.implausible_until = None;
         }
         self.newest = Some(sample);
-        self.place_among(scene);
+        self.place_among(scene, near);
     }
 
-    /// Find the nearest object anew: after a pose, and after a change of scene.
-    pub fn place_among(&mut self, scene: &Scene) {
+    /// Find the nearest of these objects anew: after a pose, and after a change of scene or of what is enabled.
+    pub fn place_among(&mut self, scene: &Scene, near: &[bool]) {
         if let Some(sample) = self.newest {
-            self.nearest_object_m = scene.nearest_enabled_object_m(&sample.pose.position);
+            self.nearest_object_m = scene.nearest_object_m(&sample.pose.position, near);
         }
     }
 
@@ -228,7 +228,7 @@ mod tests {
     fn fed(samples: &[PoseSample]) -> Person {
         let mut person = Person::new(PersonId(1), Time::ZERO);
         for s in samples {
-            person.take_pose(*s, &scene(), &Parameters::new(1.6));
+            person.take_pose(*s, &scene(), &[true], &Parameters::new(1.6));
         }
         person
     }
@@ -271,7 +271,7 @@ mod tests {
         let near = |samples: &[PoseSample]| {
             let mut person = Person::new(PersonId(1), Time::ZERO);
             for s in samples {
-                person.take_pose(*s, &scene(), &Parameters::new(1.6));
+                person.take_pose(*s, &scene(), &[true], &Parameters::new(1.6));
                 person.update_zones(s.taken_at, &Parameters::new(1.6));
             }
             person.threat(Time::from_micros(100_000)).unwrap().near_object

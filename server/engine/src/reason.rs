@@ -230,4 +230,28 @@ pub enum Reason {
     JogNotYet,
     /// Jog: the machine is in another mode.
     JogOver(Mode),
+    /// Scenario: the active scene has none.
+    NoScenario,
+    /// Scenario: it runs while the machine follows people, and stands now.
+    ScenarioStands,
+    /// Scenario: no transition waits for such a cue.
+    NoSuchCue {
+        /// As asked.
+        cue: String,
+        /// Those that there are.
+        known: Vec<String>,
+    },
+    /// Scenario: no transition from this state waits for it now.
+    NotAwaited {
+        /// The cue or the client event.
+        name: String,
+        /// The state's id.
+        state: String,
+    },
+    /// Scenario: there is no state of this id.
+    NoSuchState(String),
+    /// Scenario: this is the first state of the run.
+    NothingBefore,
+    /// Scenario: it is in the state of this id.
+    NowInState(String),
 }

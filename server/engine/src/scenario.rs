@@ -102,6 +102,11 @@ impl Scenario {
         self.cues.iter().position(|known| &**known == name)
     }
 
+    /// Every client event that a transition waits for.
+    pub fn client_events(&self) -> &[Arc<str>] {
+        &self.client_events
+    }
+
     /// The client event of this name.
     pub fn client_event_of(&self, name: &str) -> Option<usize> {
         self.client_events.iter().position(|known| &**known == name)

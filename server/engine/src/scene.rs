@@ -108,11 +108,11 @@ impl Scene {
         self.scenario.as_ref()
     }
 
-    /// What is worth a second look in the scenario.
+    /// What is worth a second look in the scenario; paths are from the scenario on.
     pub fn findings(&self) -> Vec<Finding> {
         let (objects, zones) = ids(&self.spec);
         let priors: Vec<f64> = self.spec.objects.iter().map(|object| object.prior).collect();
-        let stage = Stage { objects: &objects, zones: &zones, priors: &priors };
+        let stage = Stage { objects: &objects, zones: &zones, priors: &priors, enabled: &self.enabled };
         self.scenario.as_ref().map_or_else(Vec::new, |scenario| scenario.findings(stage))
     }
 

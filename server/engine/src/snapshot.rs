@@ -5,6 +5,7 @@ use crate::mode::{Mode, RequestKind};
 use crate::observation::PersonId;
 use crate::reason::Reason;
 use crate::safety::separation::Terms;
+use crate::scenario::Value;
 use crate::time::Time;
 
 /// Everything that a dashboard or a client may see of the engine at one moment.
@@ -28,6 +29,8 @@ pub struct Snapshot {
     pub persons: Vec<PersonState>,
     /// Every object of the scene, in the scene's order.
     pub objects: Vec<ObjectState>,
+    /// The scenario; none where the scene has none.
+    pub scenario: Option<ScenarioState>,
     /// The intention rule in use, by name.
     pub intention_rule: &'static str,
     /// Where the column stands while it is not plain what will be touched, by name.
@@ -200,6 +203,8 @@ pub struct ObjectState {
     pub probability: f64,
     /// The prior in force.
     pub prior: f64,
+    /// It can be served now.
+    pub enabled: bool,
     /// Where the column's centre must stand to serve it.
     pub column_place: Floor,
     /// When the column is in place for it, s from now: by the plan that it drives now where that leads there, people in
@@ -218,6 +223,42 @@ pub struct ObjectState {
     pub angle_rad: Option<f64>,
     /// From the visitor's head to its surface, m; none without a visitor.
     pub distance_m: Option<f64>,
+}
+
+/// The scenario now; states and variables by id.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScenarioState {
+    /// The state.
+    pub state: String,
+    /// For how long, on the scenario's clock, s.
+    pub in_state_secs: f64,
+    /// Its clock runs: the machine follows people.
+    pub runs: bool,
+    /// States entered in this run.
+    pub entered: usize,
+    /// The variables.
+    pub variables: Vec<(String, Value)>,
+    /// The ways on from here, in the order in which they are looked at.
+    pub next: Vec<NextState>,
+    /// The state that a rewind leads to.
+    pub before: Option<String>,
+    /// Where the last run ended, if it got beyond its beginning and no other has begun since.
+    pub left_in: Option<String>,
+    /// Its transitions went in a circle and wait for something to happen.
+    pub is_cut: bool,
+}
+
+/// A way on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NextState {
+    /// It is one of those from anywhere.
+    pub is_from_anywhere: bool,
+    /// Its index there, or among the state's own.
+    pub index: usize,
+    /// The state that it leads to; none: it stays.
+    pub to: Option<String>,
+    /// In how many seconds its condition holds if everybody goes on with what they do, 0: now; none: time alone will not do.
+    pub due_secs: Option<f64>,
 }
 
 impl RuleId {

@@ -43,6 +43,8 @@ pub struct ClosedLoop {
     checkers: [Checker; 2],
     now: Time,
     persons: Vec<PersonNow>,
+    /// Which objects a head counts as near to.
+    near: Vec<bool>,
     missed: bool,
 }
 
@@ -89,6 +91,7 @@ impl ClosedLoop {
             checkers,
             now: start,
             persons: Vec::new(),
+            near: Vec::new(),
             missed: false,
         }
     }
@@ -106,6 +109,7 @@ impl ClosedLoop {
         };
         let answer = self.engine.request(self.now, request);
         if let Some(scene) = activated.filter(|_| answer.outcome == Outcome::Accepted) {
+            self.near.clear();
             let rules = rules_of(self.engine.config().limits, self.engine.config().travel, scene.spec());
             for checker in &mut self.checkers {
                 checker.change_shapes(rules.footprint.clone(), rules.keep_outs.clone());
@@ -219,9 +223,16 @@ impl ClosedLoop {
     /// `told`: what the machine goes by from now on; none when it was told nothing in this period.
     fn check(&mut self, report: &MachineReport, truth: Truth, told: Option<Action>, heads: &[TrueHead]) {
         let scene = self.engine.scene();
+        // What a scenario switches off while the column moves keeps its near zone until it rests.
+        let rests = truth.velocity.norm() < RESTS_MPS
+            && !matches!(told, Some(Action::Track(setpoint)) if setpoint.velocity.norm() >= RESTS_MPS);
+        self.near.resize(self.engine.enabled().len(), false);
+        for (near, enabled) in self.near.iter_mut().zip(self.engine.enabled()) {
+            *near = *enabled || *near && !rests;
+        }
         self.persons.clear();
         self.persons.extend(heads.iter().map(|head| {
-            let nearest_m = scene.nearest_enabled_object_m(&head.pose.position);
+            let nearest_m = scene.nearest_object_m(&head.pose.position, &self.near);
             PersonNow {
                 id: head.person,
                 head: head.pose.position.floor(),
@@ -252,6 +263,9 @@ impl ClosedLoop {
         }
     }
 }
+
+/// Slower than this the column rests, m/s.
+const RESTS_MPS: f64 = 0.01;
 
 /// The rules of the checker for a machine and a scene, taken from the scene's description alone.
 pub fn rules_of(limits: Limits, travel: Travel, scene: &SceneSpec) -> Rules {

@@ -25,8 +25,8 @@ pub use error::{ClientError, ErrorCode};
 pub use outgoing::POSE_RATE_HZ;
 pub use pace::{AbuseGauge, MOST_POSES_PER_SEC, OTHER_MESSAGES_PER_SEC, OutOfOrder, Sequencer, Verdict};
 pub use to_client::{
-    ActiveScene, ClientLimits, ClockPong, ColumnNow, ObjectPlace, Prediction, PropAt, StopState, ToClient,
-    Welcome,
+    ActiveScene, ClientLimits, ClockPong, ColumnNow, EventAnswered, ObjectPlace, Prediction, PropAt,
+    ScenarioNow, StopState, ToClient, Welcome,
 };
 
 /// The subprotocol of JSON text frames.
@@ -74,7 +74,7 @@ pub enum FromClient {
     TouchBegan(Touch),
     /// It touches it no more.
     TouchEnded(Touch),
-    /// Something of the client's own, for the record.
+    /// Something of the client's own, for the record and for the scenario.
     SceneEvent(SceneEvent),
     /// One half of a clock exchange.
     ClockPing(ClockPing),
@@ -178,7 +178,7 @@ pub struct Touch {
     pub client_time_micros: i64,
 }
 
-/// Something of the client's own, for the record.
+/// Something of the client's own, for the record and for the scenario: a transition may wait for its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct SceneEvent {

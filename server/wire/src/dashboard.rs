@@ -19,8 +19,8 @@ pub(crate) use convert::{clears_when, name_of};
 pub use event::rule_title;
 pub use health::{MachineHealth, MachineLink};
 pub use snapshot::{
-    Activity, Client, Column, ControlLoop, Decision, Mode, Object, Person, RequestState, RuleState,
-    RuleStatus, SeparationTerm, SeparationTerms, Snapshot, StopCause,
+    Activity, Client, Column, ControlLoop, Decision, Mode, NextState, Object, Person, RequestState,
+    RuleState, RuleStatus, Scenario, SeparationTerm, SeparationTerms, Snapshot, StopCause,
 };
 
 use crate::reason::Reason;
@@ -50,13 +50,13 @@ pub enum FromDashboard {
         #[serde(default)]
         speed_mps: f64,
     },
-    /// Home, arm, disarm or reset; confirm a person on the floor mark, or gone.
+    /// Home, arm, disarm or reset; confirm a person on the floor mark, or gone; lead the scenario on.
     Request {
         /// Echoed in the answer.
         request_id: u32,
         /// What is asked.
         request: MachineRequest,
-        /// Why; due for a reset.
+        /// Why; due for a reset, and to skip or go back in the scenario.
         #[serde(default)]
         reason: Option<String>,
     },
@@ -112,6 +112,12 @@ pub enum MachineRequest {
     ConfirmLeft(u32),
     /// Somebody looked: nobody is in the arena (R16). The word holds until the next stop or disarming.
     ConfirmClear,
+    /// Give this cue to the scenario.
+    Cue(String),
+    /// Skip to the scenario's state of this id.
+    SkipTo(String),
+    /// Back to the scenario's state before, with the variables as they were.
+    Rewind,
 }
 
 /// What the server says to a dashboard.
@@ -216,7 +222,7 @@ pub struct Event {
     pub at: String,
     /// Kind: `mode_changed`, `rule_breached`, `rule_cleared`, `request_accepted`, `request_refused`, `stop_pressed`,
     /// `came_to_rest`, `jog_began`, `jog_ended`, `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
-    /// `scene_activated`, `prior_changed`, `client_connected`, `client_gone`, `client_error`, `calibration_accepted`,
+    /// `scene_activated`, `state_entered`, `scenario_cut`, `prior_changed`, `client_connected`, `client_gone`, `client_error`, `calibration_accepted`,
     /// `calibration_refused`, `calibration_chosen`, `machine_commissioned`, `commissioning_refused`.
     pub kind: String,
     /// In plain words.
@@ -228,7 +234,7 @@ pub struct Event {
 
 impl Event {
     /// Every kind.
-    pub const KINDS: [&'static str; 26] = [
+    pub const KINDS: [&'static str; 28] = [
         "mode_changed",
         "rule_breached",
         "rule_cleared",
@@ -246,6 +252,8 @@ impl Event {
         "touch_ended",
         "scene_event",
         "scene_activated",
+        "state_entered",
+        "scenario_cut",
         "prior_changed",
         "client_connected",
         "client_gone",

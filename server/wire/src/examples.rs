@@ -12,8 +12,8 @@ use serde_json::json;
 
 use crate::client::{
     ActiveScene, ClientError, ClientHello, ClientLimits, ClockPing, ClockPong, ColumnNow, Convention,
-    ErrorCode, FromClient, Hands, HeadPose, PersonName, PongReceived, Prediction, SceneEvent, StopState,
-    ToClient, Touch, Welcome,
+    ErrorCode, EventAnswered, FromClient, Hands, HeadPose, PersonName, PongReceived, Prediction, ScenarioNow,
+    SceneEvent, StopState, ToClient, Touch, Welcome,
 };
 use crate::convention::ClientFrame;
 use crate::dashboard::{
@@ -145,6 +145,12 @@ pub fn to_client() -> Vec<ToClient> {
         )),
         ToClient::Error(ClientError::plain(ErrorCode::HelloExpected, "no hello came within 5 s").fatal()),
     ];
+    all.push(ToClient::EventAnswered(EventAnswered {
+        name: "spilled".into(),
+        outcome: Outcome::Accepted,
+        detail: Reason::NowInState { state: "arrival".into() }.to_string(),
+    }));
+    all.extend(ScenarioNow::new(&state).map(ToClient::Scenario));
     all.extend(Prediction::new(&state, &frame).map(ToClient::Prediction));
     all
 }
@@ -163,6 +169,12 @@ pub fn from_dashboard() -> Vec<FromDashboard> {
         FromDashboard::Jog { request_id: 12, to: Some(JogAim::Place([2.0, 1.5])), speed_mps: 0.25 },
         FromDashboard::Jog { request_id: 13, to: None, speed_mps: 0.0 },
         FromDashboard::Request { request_id: 10, request: MachineRequest::ConfirmOrigin(3), reason: None },
+        FromDashboard::Request { request_id: 11, request: MachineRequest::Cue("begin".into()), reason: None },
+        FromDashboard::Request {
+            request_id: 12,
+            request: MachineRequest::SkipTo("tea".into()),
+            reason: Some("the kettle is empty".into()),
+        },
     ]
 }
 

@@ -376,6 +376,38 @@ pub enum Reason {
     },
     /// The scene is in force.
     SceneActivated,
+    /// Scenario: the active scene has none.
+    NoScenario,
+    /// Scenario: it stands, for the machine does not follow people.
+    ScenarioStands,
+    /// Scenario: no transition waits for such a cue.
+    NoSuchCue {
+        /// As asked.
+        cue: String,
+        /// Those that there are.
+        known: Vec<String>,
+    },
+    /// Scenario: no transition from this state waits for it now.
+    NotAwaited {
+        /// The cue or the client event.
+        name: String,
+        /// The state's id.
+        state: String,
+    },
+    /// Scenario: there is no such state.
+    NoSuchState {
+        /// As asked.
+        state: String,
+    },
+    /// Scenario: this is the first state of the run.
+    NothingBefore,
+    /// Scenario: it is in a state.
+    NowInState {
+        /// The state's id.
+        state: String,
+    },
+    /// Scenario: skipping and going back need a reason.
+    SkipNeedsReason,
     /// The control loop's queue is full.
     Busy,
     /// The control loop has ended.

@@ -3,12 +3,15 @@
 //! A recorded frame is a snapshot without what only the live desk needs, rounded: lengths and angles to 0.1 mm and
 //! 0.1 mrad, velocities to 1 mm/s, weights to four significant digits, probabilities to 0.0001.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
 use crate::accepts::Accepts;
-use crate::dashboard::{Activity, Column, MachineShape, Mode, Object, Person, Snapshot};
+use crate::dashboard::{Activity, Column, MachineShape, Mode, Object, Person, Scenario, Snapshot};
+use crate::scene::ValueDocument;
 
 /// The published state at one moment of a session, room frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
@@ -23,6 +26,9 @@ pub struct RecordedFrame {
     pub persons: Vec<RecordedPerson>,
     /// Every object of the scene then in force, in its order.
     pub objects: Vec<RecordedObject>,
+    /// The scenario; null where the scene had none.
+    #[serde(default)]
+    pub scenario: Option<RecordedScenario>,
 }
 
 /// The column in a recorded frame; see [`Column`].
@@ -82,6 +88,22 @@ pub struct RecordedObject {
     pub probability: f64,
     /// The prior in force.
     pub prior: f64,
+    /// It could be served.
+    #[serde(default = "yes")]
+    pub enabled: bool,
+}
+
+/// The scenario in a recorded frame; see [`Scenario`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct RecordedScenario {
+    /// Id of its state.
+    pub state: String,
+    /// For how long it had been in it, s.
+    pub in_state_secs: f64,
+    /// Its clock ran.
+    pub runs: bool,
+    /// The variables, by id.
+    pub variables: BTreeMap<String, ValueDocument>,
 }
 
 /// Frames of a recording, oldest first: the body of `GET /api/v1/sessions/{id}/frames`.
@@ -228,6 +250,7 @@ impl From<Snapshot> for RecordedFrame {
             column: state.column.into(),
             persons: state.persons.into_iter().map(Into::into).collect(),
             objects: state.objects.into_iter().map(Into::into).collect(),
+            scenario: state.scenario.map(Into::into),
         }
     }
 }
@@ -271,8 +294,25 @@ impl From<Object> for RecordedObject {
             weight: to_four_digits(object.weight),
             probability: to_places(object.probability, 4),
             prior: to_places(object.prior, 4),
+            enabled: object.enabled,
         }
     }
+}
+
+impl From<Scenario> for RecordedScenario {
+    fn from(scenario: Scenario) -> Self {
+        Self {
+            state: scenario.state,
+            in_state_secs: to_places(scenario.in_state_secs, 2),
+            runs: scenario.runs,
+            variables: scenario.variables,
+        }
+    }
+}
+
+/// Recordings of before there were scenarios say nothing of what is enabled.
+const fn yes() -> bool {
+    true
 }
 
 fn length(value: f64) -> f64 {

@@ -5,9 +5,11 @@ use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::observation::PersonId;
 use covr_engine::reason::Reason;
 use covr_engine::safety::separation::Terms;
+use covr_engine::scenario::Value;
 use covr_engine::scene::Scene;
 use covr_engine::snapshot::{
-    Activity, ColumnState, ObjectState, PersonState, RuleId, RuleState, RuleStatus, Snapshot, StopCause,
+    Activity, ColumnState, NextState, ObjectState, PersonState, RuleId, RuleState, RuleStatus, ScenarioState,
+    Snapshot, StopCause,
 };
 use covr_engine::time::Time;
 use nalgebra::UnitQuaternion;
@@ -17,7 +19,7 @@ use crate::reason::Reason as WireReason;
 use crate::scene::{SceneDocument, build_scene, parse_scene};
 
 pub(crate) const SCENE: &str = r#"{
-  "schema": "covr.scene.v1",
+  "schema": "covr.scene.v2",
   "name": "two things",
   "arena": {"min": [0, 0], "max": [4, 4]},
   "props": [{"id": "handle", "offset": [0.1, 0]}],
@@ -26,7 +28,26 @@ pub(crate) const SCENE: &str = r#"{
      "shape": {"kind": "cylinder", "radius": 0.1, "height": 0.25}},
     {"id": "lamp", "position": [3, 3, 1.4], "shape": {"kind": "sphere", "radius": 0.15}}
   ],
-  "keep_outs": [{"id": "sofa", "shape": {"kind": "circle", "centre": [0.5, 0.5], "radius": 0.3}}]
+  "keep_outs": [{"id": "sofa", "shape": {"kind": "circle", "centre": [0.5, 0.5], "radius": 0.3}}],
+  "zones": [{"id": "mat", "label": "door mat", "shape": {"kind": "circle", "centre": [3, 1], "radius": 0.4}}],
+  "scenario": {
+    "initial": "arrival",
+    "variables": [{"id": "cups", "start": 0}, {"id": "hot", "start": false}],
+    "states": [
+      {"id": "arrival", "label": "Somebody comes in",
+       "transitions": [{"on": [{"kind": "zone_entered", "zone": "mat"}, {"kind": "cue", "name": "begin"}], "to": "tea"}]},
+      {"id": "tea", "label": "The kettle boils", "enabled": ["kettle", "lamp"],
+       "priors": {"kettle": {"value": 0.8, "per_touch": -0.2, "least": 0.2}, "lamp": 0.2},
+       "entry": [{"kind": "set", "variable": "hot", "value": true}],
+       "transitions": [
+         {"when": {"kind": "touching", "object": "kettle", "secs": 10}, "to": "light",
+          "acts": [{"kind": "add", "variable": "cups", "amount": 1}]}]},
+      {"id": "light", "label": "Lights out", "enabled": ["lamp"], "final": true}
+    ],
+    "anywhere": [
+      {"on": [{"kind": "client_event", "name": "spilled"}],
+       "when": {"kind": "variable", "variable": "hot", "is": "==", "value": true}, "to": "arrival"}]
+  }
 }"#;
 
 pub(crate) fn document() -> SceneDocument {
@@ -76,6 +97,7 @@ pub(crate) fn snapshot() -> Snapshot {
         weight: probability,
         probability,
         prior: 1.0,
+        enabled: true,
         column_place: Floor::new(if id == "kettle" { 0.9 } else { 3.0 }, 3.0),
         arrival_secs: 2.0,
         touch_secs,
@@ -121,6 +143,30 @@ pub(crate) fn snapshot() -> Snapshot {
         },
         persons: vec![person(3, Some(looking)), person(8, None)],
         objects: vec![object("kettle", 0.4, Some(1.5)), object("lamp", 0.6, None)],
+        scenario: Some(ScenarioState {
+            state: "tea".into(),
+            in_state_secs: 4.2,
+            runs: false,
+            entered: 2,
+            variables: vec![("cups".into(), Value::Integer(1)), ("hot".into(), Value::Boolean(true))],
+            next: vec![
+                NextState {
+                    is_from_anywhere: false,
+                    index: 0,
+                    to: Some("light".into()),
+                    due_secs: Some(5.8),
+                },
+                NextState {
+                    is_from_anywhere: true,
+                    index: 0,
+                    to: Some("arrival".into()),
+                    due_secs: Some(0.0),
+                },
+            ],
+            before: Some("arrival".into()),
+            left_in: None,
+            is_cut: false,
+        }),
         intention_rule: "paper",
         standing: "mean",
         motion: "proxy",

@@ -5,17 +5,25 @@
 mod check;
 mod parse;
 mod place;
+mod scenario;
 mod shape;
 mod spec;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use ts_rs::TS;
 
-pub use parse::{MAX_SCENE_BYTES, SceneError, build_scene, parse_scene};
+pub use parse::{MAX_SCENE_BYTES, SceneError, SceneWarning, build_scene, parse_scene, scene_warnings};
+pub use scenario::{
+    ActDocument, ChangingPriorDocument, ComparisonDocument, ConditionDocument, InteractionDocument,
+    PriorDocument, ScenarioDocument, StateDocument, TransitionDocument, TriggerDocument, ValueDocument,
+    VariableDocument,
+};
 
 /// The value of a scene's `schema`.
-pub const SCHEMA: &str = "covr.scene.v1";
+pub const SCHEMA: &str = "covr.scene.v2";
+/// The version before, without zones and scenario: read as what it is today.
+const SCHEMA_BEFORE: &str = "covr.scene.v1";
 
 /// The JSON Schema of a scene, draft 2020-12: for editors, and for generators of scenes.
 pub fn scene_schema() -> serde_json::Value {
@@ -26,8 +34,9 @@ pub fn scene_schema() -> serde_json::Value {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(deny_unknown_fields)]
 pub struct SceneDocument {
-    /// `covr.scene.v1`.
-    #[schemars(extend("const" = SCHEMA))]
+    /// `covr.scene.v2`; `covr.scene.v1` is read too, and written as the newer.
+    #[serde(deserialize_with = "migrated")]
+    #[schemars(extend("enum" = [SCHEMA, SCHEMA_BEFORE]))]
     pub schema: String,
     /// What people call it; 1 to 80 characters.
     #[schemars(length(min = 1, max = 80))]
@@ -52,6 +61,13 @@ pub struct SceneDocument {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 100))]
     pub keep_outs: Vec<KeepOutDocument>,
+    /// Places on the floor that the scenario knows people to be in.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 100))]
+    pub zones: Vec<ZoneDocument>,
+    /// What can be served when, and what leads on; none: every enabled object, always.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scenario: Option<ScenarioDocument>,
 }
 
 /// The arena's rectangle on the floor.
@@ -188,6 +204,21 @@ pub struct KeepOutDocument {
     pub shape: KeepOutShape,
 }
 
+/// A place on the floor that somebody can be in: the head over it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+#[serde(deny_unknown_fields)]
+pub struct ZoneDocument {
+    /// Unique in the scene.
+    #[schemars(length(min = 1, max = 64))]
+    pub id: String,
+    /// For people.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[schemars(length(max = 80))]
+    pub label: String,
+    /// Its shape on the floor.
+    pub shape: KeepOutShape,
+}
+
 /// A shape on the floor.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema, TS)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
@@ -214,6 +245,12 @@ impl Default for ColumnDocument {
     fn default() -> Self {
         Self { size: [0.15, 0.15] }
     }
+}
+
+/// A scene of the version before is one of this version, without what came since.
+fn migrated<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    let schema = String::deserialize(deserializer)?;
+    Ok(if schema == SCHEMA_BEFORE { SCHEMA.to_owned() } else { schema })
 }
 
 const fn one() -> f64 {

@@ -15,7 +15,7 @@ use covr_wire::commissioning::Commissioning;
 use covr_wire::dashboard::{Event, FromDashboard, ToDashboard};
 use covr_wire::reason::Reason;
 use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
-use covr_wire::scene::{SceneDocument, SceneError};
+use covr_wire::scene::{SceneDocument, SceneError, SceneWarning};
 use serde_json::json;
 use ts_rs::{Config, TS};
 
@@ -55,6 +55,7 @@ fn generate() -> BTreeMap<String, String> {
     PriorChange::export_all(&config).expect("priors");
     SceneDocument::export_all(&config).expect("scenes");
     SceneError::export_all(&config).expect("scene errors");
+    SceneWarning::export_all(&config).expect("scene warnings");
     FromClient::export_all(&config).expect("client messages");
     ToClient::export_all(&config).expect("messages to clients");
     let mut files = read(out.path());

@@ -2,11 +2,15 @@
 
 use std::path::Path;
 
-use covr_wire::scene::{MAX_SCENE_BYTES, SceneError, parse_scene, scene_schema};
+use covr_engine::frames::Floor;
+use covr_engine::machine::Travel;
+use covr_wire::scene::{MAX_SCENE_BYTES, SCHEMA, SceneError, parse_scene, scene_schema, scene_warnings};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-const EXAMPLES: [&str; 4] = ["demo.json", "kitchen.json", "paper-demo.json", "gallery.json"];
+const TRAVEL: Travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
+const EXAMPLES: [&str; 5] =
+    ["demo.json", "kitchen.json", "paper-demo.json", "gallery.json", "escape-room.json"];
 
 fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../deploy/scenes").join(name);
@@ -24,7 +28,7 @@ fn changed(mut scene: Value, pointer: &str, to: Value) -> Value {
 
 fn small() -> Value {
     json!({
-        "schema": "covr.scene.v1",
+        "schema": "covr.scene.v2",
         "name": "every shape",
         "arena": {"min": [0, 0], "max": [4, 4]},
         "column": {"size": [0.2, 0.2]},
@@ -39,7 +43,35 @@ fn small() -> Value {
         "keep_outs": [
             {"id": "x", "shape": {"kind": "circle", "centre": [3, 3], "radius": 0.2}},
             {"id": "y", "shape": {"kind": "polygon", "corners": [[0,0],[1,0],[0,1]]}}
-        ]
+        ],
+        "zones": [{"id": "z", "shape": {"kind": "circle", "centre": [3, 3], "radius": 0.2}}],
+        "scenario": {
+            "initial": "one",
+            "variables": [{"id": "n", "start": 0}, {"id": "yes", "start": false}],
+            "states": [
+                {
+                    "id": "one", "label": "first", "note": "look", "enabled": ["a", "b"],
+                    "priors": {"a": 0.5, "b": {"value": 0.5, "per_s": 0.1, "per_touch": -0.1, "least": 0.1, "most": 0.9}},
+                    "entry": [{"kind": "set", "variable": "yes", "value": true}, {"kind": "add", "variable": "n", "amount": 1}],
+                    "transitions": [
+                        {"label": "on", "on": [
+                            {"kind": "touch_began", "object": "a"}, {"kind": "touch_ended", "object": "a"},
+                            {"kind": "zone_entered", "zone": "z"}, {"kind": "zone_left", "zone": "z"},
+                            {"kind": "client_event", "name": "e"}, {"kind": "cue", "name": "c"}
+                        ], "to": "two"},
+                        {"when": {"kind": "all", "conditions": [
+                            {"kind": "touching", "object": "a", "secs": 2},
+                            {"kind": "any", "conditions": [{"kind": "in_zone", "zone": "z"}, {"kind": "looks_at", "object": "b"}]},
+                            {"kind": "not", "condition": {"kind": "in_place", "object": "a"}},
+                            {"kind": "variable", "variable": "n", "is": ">=", "value": 1},
+                            {"kind": "time_in_state", "secs": 1}
+                        ]}, "to": "two"}
+                    ]
+                },
+                {"id": "two", "final": true}
+            ],
+            "anywhere": [{"on": [{"kind": "cue", "name": "back"}], "to": "one"}]
+        }
     })
 }
 
@@ -85,7 +117,7 @@ fn a_document_written_and_read_again_is_the_same() {
 /// Changes that the schema can see: it must refuse what the parser refuses, at the same path.
 fn structural() -> Vec<(&'static str, Value, &'static str)> {
     vec![
-        ("/schema", json!("covr.scene.v2"), "$.schema"),
+        ("/schema", json!("covr.scene.v3"), "$.schema"),
         ("/name", json!(""), "$.name"),
         ("/name", json!("x".repeat(81)), "$.name"),
         ("/name", json!(7), "$.name"),
@@ -114,6 +146,57 @@ fn structural() -> Vec<(&'static str, Value, &'static str)> {
         ("/keep_outs/0/shape/radius", json!(0.001), "$.keep_outs[0].shape.radius"),
         ("/keep_outs/1/shape/corners", json!([[0, 0], [1, 0]]), "$.keep_outs[1].shape.corners"),
         ("/keep_outs/1/shape/corners/2/1", json!(400), "$.keep_outs[1].shape.corners[2][1]"),
+        ("/zones/0/id", json!(""), "$.zones[0].id"),
+        ("/zones/0/shape/radius", json!(0.001), "$.zones[0].shape.radius"),
+        ("/scenario/initial", json!(3), "$.scenario.initial"),
+        ("/scenario/states", json!([]), "$.scenario.states"),
+        ("/scenario/variables/0/start", json!(1.5), "$.scenario.variables[0].start"),
+        ("/scenario/variables/0/start", json!(2_000_000), "$.scenario.variables[0].start"),
+        ("/scenario/states/0/id", json!("x".repeat(65)), "$.scenario.states[0].id"),
+        ("/scenario/states/0/label", json!("x".repeat(81)), "$.scenario.states[0].label"),
+        ("/scenario/states/0/enabled", json!("a"), "$.scenario.states[0].enabled"),
+        ("/scenario/states/0/priors/a", json!("likely"), "$.scenario.states[0].priors.a"),
+        ("/scenario/states/0/priors/b/per_s", json!(2), "$.scenario.states[0].priors.b.per_s"),
+        ("/scenario/states/0/priors/b/value", json!(null), "$.scenario.states[0].priors.b.value"),
+        ("/scenario/states/0/entry/0/kind", json!("shout"), "$.scenario.states[0].entry[0].kind"),
+        ("/scenario/states/0/entry/1/amount", json!(0.5), "$.scenario.states[0].entry[1].amount"),
+        (
+            "/scenario/states/0/transitions/0/on/4/name",
+            json!(""),
+            "$.scenario.states[0].transitions[0].on[4].name",
+        ),
+        (
+            "/scenario/states/0/transitions/0/on/0/kind",
+            json!("kick"),
+            "$.scenario.states[0].transitions[0].on[0].kind",
+        ),
+        ("/scenario/states/0/transitions/0/to", json!(["two"]), "$.scenario.states[0].transitions[0].to"),
+        (
+            "/scenario/states/0/transitions/1/when/conditions",
+            json!([]),
+            "$.scenario.states[0].transitions[1].when.conditions",
+        ),
+        (
+            "/scenario/states/0/transitions/1/when/conditions/0/secs",
+            json!(4000),
+            "$.scenario.states[0].transitions[1].when.conditions[0].secs",
+        ),
+        (
+            "/scenario/states/0/transitions/1/when/conditions/1/conditions/0/kind",
+            json!("near"),
+            "$.scenario.states[0].transitions[1].when.conditions[1].conditions[0].kind",
+        ),
+        (
+            "/scenario/states/0/transitions/1/when/conditions/2/condition",
+            json!(null),
+            "$.scenario.states[0].transitions[1].when.conditions[2].condition",
+        ),
+        (
+            "/scenario/states/0/transitions/1/when/conditions/3/is",
+            json!("=>"),
+            "$.scenario.states[0].transitions[1].when.conditions[3].is",
+        ),
+        ("/scenario/anywhere/0/on/0", json!("cue"), "$.scenario.anywhere[0].on[0]"),
     ]
 }
 
@@ -144,6 +227,16 @@ fn schema_and_parser_refuse_fields_that_nobody_knows_and_miss_those_due() {
         "/objects/0/shape",
         "/keep_outs/0",
         "/keep_outs/0/shape",
+        "/zones/0",
+        "/scenario",
+        "/scenario/variables/0",
+        "/scenario/states/0",
+        "/scenario/states/0/priors/b",
+        "/scenario/states/0/entry/0",
+        "/scenario/states/0/transitions/0",
+        "/scenario/states/0/transitions/0/on/0",
+        "/scenario/states/0/transitions/1/when",
+        "/scenario/states/0/transitions/1/when/conditions/2",
     ];
     for parent in parents {
         let mut scene = small();
@@ -159,6 +252,13 @@ fn schema_and_parser_refuse_fields_that_nobody_knows_and_miss_those_due() {
         ("/objects/2/shape", "height", "$.objects[2].shape.height"),
         ("/objects/2/shape", "kind", "$.objects[2].shape.kind"),
         ("/keep_outs/0/shape", "centre", "$.keep_outs[0].shape.centre"),
+        ("/scenario", "initial", "$.scenario.initial"),
+        ("/scenario/states/0/entry/1", "amount", "$.scenario.states[0].entry[1].amount"),
+        (
+            "/scenario/states/0/transitions/1/when/conditions/4",
+            "secs",
+            "$.scenario.states[0].transitions[1].when.conditions[4].secs",
+        ),
     ] {
         let mut scene = small();
         scene.pointer_mut(parent).and_then(Value::as_object_mut).expect("a part").remove(key);
@@ -216,6 +316,93 @@ fn everything_wrong_with_a_scene_is_said_at_once_with_its_line() {
     assert!(said("$.objects[1].prop").1.contains("found \"nowhere\", expected a prop of this scene"));
     assert_eq!(said("$.objects[1].shape.triangles").0, Some(8));
     assert_eq!(errors.len(), 5, "{errors:?}");
+}
+
+#[test]
+fn twelve_mistakes_in_a_scenario_are_said_at_once_each_with_its_line() {
+    let text = r#"{
+  "schema": "covr.scene.v2",
+  "name": "mistakes in a scenario",
+  "arena": {"min": [0, 0], "max": [4, 4]},
+  "objects": [
+    {"id": "a", "position": [1, 1, 1], "shape": {"kind": "sphere", "radius": 0.1}},
+    {"id": "b", "position": [2, 1, 1], "shape": {"kind": "sphere", "radius": 0.1}}
+  ],
+  "zones": [{"id": "mat", "shape": {"kind": "circle", "centre": [1, 1], "radius": 0.3}}],
+  "scenario": {
+    "initial": "nowhere",
+    "variables": [{"id": "n", "start": 0}],
+    "states": [
+      {"id": "one", "enabled": ["c"],
+       "priors": {"b": 0.4},
+       "interactions": {"a": "lead"},
+       "transitions": [
+         {"when": {"kind": "in_zone", "zone": "rug"}, "to": "two"},
+         {"when": {"kind": "variable", "variable": "n", "is": "==", "value": true}, "to": "one"}
+       ]},
+      {"id": "one", "final": true,
+       "entry": [{"kind": "add", "variable": "m", "amount": 1}],
+       "transitions": [
+         {"on": [{"kind": "touch_began", "object": "z"}], "when": {"kind": "time_in_state", "secs": 9999}, "to": "one"}
+       ]}
+    ]
+  }
+}"#;
+    let errors = parse_scene(text.as_bytes()).expect_err("a bad scene");
+    let said: Vec<_> = errors.iter().map(|e| (e.line.unwrap_or(0), e.path.as_str())).collect();
+    assert_eq!(
+        said,
+        [
+            (21, "$.scenario.states[1].id"),
+            (11, "$.scenario.initial"),
+            (14, "$.scenario.states[0].enabled[0]"),
+            (15, "$.scenario.states[0].priors.b"),
+            (16, "$.scenario.states[0].interactions.a"),
+            (18, "$.scenario.states[0].transitions[0].when.zone"),
+            (18, "$.scenario.states[0].transitions[0].to"),
+            (19, "$.scenario.states[0].transitions[1].when.value"),
+            (22, "$.scenario.states[1].entry[0].variable"),
+            (24, "$.scenario.states[1].transitions[0].on[0].object"),
+            (24, "$.scenario.states[1].transitions[0].when.secs"),
+            (23, "$.scenario.states[1].transitions"),
+        ]
+    );
+    assert!(errors[4].found.contains("\"lead\", which this version cannot do"), "{}", errors[4]);
+}
+
+#[test]
+fn a_scene_of_the_version_before_is_read_as_one_of_this() {
+    let mut old = small();
+    old["schema"] = json!("covr.scene.v1");
+    for since_then in ["zones", "scenario"] {
+        old.as_object_mut().expect("an object").remove(since_then);
+    }
+    let (document, scene) = parse_scene(old.to_string().as_bytes()).expect("a scene of before");
+    assert_eq!((document.schema.as_str(), scene.scenario()), (SCHEMA, None));
+    let written = serde_json::to_value(&document).expect("it can be written");
+    assert_eq!(written["schema"], SCHEMA);
+    assert!(jsonschema::draft202012::new(&scene_schema()).expect("a good schema").is_valid(&old));
+}
+
+#[test]
+fn what_is_worth_a_second_look_is_told_with_its_line() {
+    let text = small().to_string();
+    let (_, scene) = parse_scene(text.as_bytes()).expect("a good scene");
+    let warnings = scene_warnings(text.as_bytes(), &scene, &TRAVEL);
+    let told: Vec<_> = warnings.iter().map(|w| (w.line, w.path.as_str(), w.found.as_str())).collect();
+    assert_eq!(
+        told,
+        [
+            (Some(1), "$.scenario.states", "no state enables the object \"c\""),
+            (Some(1), "$.scenario.states", "no state enables the object \"d\""),
+            (Some(1), "$.scenario.states", "no state enables the object \"e\""),
+        ]
+    );
+    let escape = example("escape-room.json");
+    let (_, scene) = parse_scene(escape.as_bytes()).expect("a good scene");
+    let found: Vec<_> =
+        scene_warnings(escape.as_bytes(), &scene, &TRAVEL).into_iter().map(|w| w.path).collect();
+    assert_eq!(found, ["$.scenario.states[3].transitions[0].when"; 0], "the example has nothing to look at");
 }
 
 #[test]

@@ -151,7 +151,7 @@ fn scene() -> Value {
         })
         .collect();
     json!({
-        "schema": "covr.scene.v1", "name": "Two hundred", "arena": {"min": [0, 0], "max": [4, 4]}, "objects": objects,
+        "schema": "covr.scene.v2", "name": "Two hundred", "arena": {"min": [0, 0], "max": [4, 4]}, "objects": objects,
     })
 }
 

@@ -18,6 +18,7 @@ mod lateness;
 mod process;
 mod reactions;
 mod samples;
+mod scenario;
 mod stop;
 mod table;
 
@@ -70,6 +71,7 @@ fn main() {
         let effort = options.effort;
         let measured = match *name {
             "engine" => engine::measure(effort),
+            "scenario" => scenario::measure(effort),
             "latency" => runtime.block_on(latency::measure(effort)),
             "ingest" => runtime.block_on(ingest::measure(effort)),
             "lateness" => runtime.block_on(lateness::measure(effort, &mut known)),
@@ -124,5 +126,15 @@ fn say(text: &str) {
     let _ = writeln!(std::io::stdout().lock(), "{text}");
 }
 
-const FIGURES: &[&str] =
-    &["engine", "latency", "ingest", "lateness", "stop", "reactions", "boards", "process", "browser"];
+const FIGURES: &[&str] = &[
+    "engine",
+    "scenario",
+    "latency",
+    "ingest",
+    "lateness",
+    "stop",
+    "reactions",
+    "boards",
+    "process",
+    "browser",
+];

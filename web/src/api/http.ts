@@ -21,6 +21,7 @@ import type {
   SceneStored,
   SceneSummary,
   SceneVersionSummary,
+  SceneWarning,
   Session,
   SessionDetail,
   StopAcknowledged,
@@ -119,9 +120,16 @@ export async function replaceScene(id: number, text: string, author: string): Pr
   return (await call("PUT", `/api/v1/scenes/${id}`, { text, author })) as SceneStored;
 }
 
+/** What the server says of a scene that it would store. */
+export interface SceneChecked {
+  readonly name: string;
+  readonly objects: number;
+  readonly warnings: readonly SceneWarning[];
+}
+
 /** `POST /api/v1/scenes/check`: whether the server would store it. */
-export async function checkScene(text: string, author: string): Promise<{ name: string; objects: number }> {
-  return (await call("POST", "/api/v1/scenes/check", { text, author })) as { name: string; objects: number };
+export async function checkScene(text: string, author: string): Promise<SceneChecked> {
+  return (await call("POST", "/api/v1/scenes/check", { text, author })) as SceneChecked;
 }
 
 /** `GET /api/v1/scenes/{id}`: a version, the newest when none is named. */

@@ -3,7 +3,7 @@ import type { ObjectState } from "../api/types";
 import { sharesOf } from "./belief";
 
 function object(id: string, probability: number): ObjectState {
-  return { id, probability, weight: probability, prior: 1, column_place_m: [0, 0], arrival_secs: 0, touch_secs: null, late_by_s: null, in_time_probability: null, angle_rad: null, distance_m: null };
+  return { id, probability, weight: probability, prior: 1, enabled: true, column_place_m: [0, 0], arrival_secs: 0, touch_secs: null, late_by_s: null, in_time_probability: null, angle_rad: null, distance_m: null };
 }
 
 it("shows the likeliest objects, the others together, and none of them", () => {

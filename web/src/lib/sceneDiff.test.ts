@@ -35,6 +35,23 @@ describe("two versions of a scene", () => {
     expect(changesBetween(MOCK_SCENE, structuredClone(MOCK_SCENE))).toEqual([]);
   });
 
+  it("are told apart in their zones and states", () => {
+    const before = changed((scene) => {
+      scene.scenario = { initial: "dark", states: [{ id: "dark", label: "Dark" }, { id: "end", final: true }] };
+    });
+    const other = changed((scene) => {
+      scene.zones = [{ id: "mat", shape: { kind: "circle", centre: [1, 1], radius: 0.3 } }];
+      scene.scenario = { initial: "lit", states: [{ id: "dark", label: "Dark", enabled: ["bulb"] }, { id: "lit" }] };
+    });
+    expect(changesBetween(before, other)).toEqual([
+      { kind: "added", part: "zones", name: "mat" },
+      { kind: "field", field: "scenario" },
+      { kind: "removed", part: "states", name: "end" },
+      { kind: "changed", part: "states", name: "Dark", fields: ["enabled"] },
+      { kind: "added", part: "states", name: "lit" },
+    ]);
+  });
+
   it("are compared line by line: both can be read back from the comparison", () => {
     const other = changed((scene) => {
       scene.objects.reverse();

@@ -1,6 +1,6 @@
 /** What changed between two versions of a scene: line by line, and in terms of the room. */
 import { diffLines } from "diff";
-import type { KeepOutDocument, ObjectDocument, PropDocument, SceneDocument } from "../api/types";
+import type { KeepOutDocument, ObjectDocument, PropDocument, SceneDocument, StateDocument } from "../api/types";
 import { writeJson } from "./sceneText";
 
 /** A line of a comparison; numbers count from 1, null where the version does not have it. */
@@ -15,11 +15,11 @@ export interface DiffLine {
 export type DiffPart = { readonly kind: "lines"; readonly lines: readonly DiffLine[] } | { readonly kind: "skipped"; readonly lines: readonly DiffLine[] };
 
 /** What a scene consists of. */
-export type Part = "objects" | "props" | "keep_outs";
+export type Part = "objects" | "props" | "keep_outs" | "zones" | "states";
 
 /** A change in terms of the room. */
 export type SceneChange =
-  | { readonly kind: "field"; readonly field: "name" | "description" | "arena" | "column" }
+  | { readonly kind: "field"; readonly field: "name" | "description" | "arena" | "column" | "scenario" }
   | { readonly kind: "added" | "removed"; readonly part: Part; readonly name: string }
   | { readonly kind: "moved"; readonly name: string; readonly byM: number }
   | { readonly kind: "prior"; readonly name: string; readonly from: number; readonly to: number }
@@ -81,6 +81,11 @@ export function changesBetween(before: SceneDocument, after: SceneDocument): rea
     return told;
   });
   compare<KeepOutDocument>("keep_outs", before.keep_outs, after.keep_outs, changes);
+  compare<KeepOutDocument>("zones", before.zones, after.zones, changes);
+  // Beside its states: where it begins, its variables, what leads on from anywhere.
+  const rest = ({ scenario }: SceneDocument): unknown => (scenario === null || scenario === undefined ? null : { ...scenario, states: null });
+  if (!same(rest(before), rest(after))) changes.push({ kind: "field", field: "scenario" });
+  compare<StateDocument>("states", before.scenario?.states, after.scenario?.states, changes);
   return changes;
 }
 

@@ -44,7 +44,7 @@ describe("a scene's text", () => {
   });
 
   it("is drawn with the defaults that the server fills in", () => {
-    const scene = drawable('{"schema":"covr.scene.v1","name":"n","arena":{"min":[0,0],"max":[1,1]},"objects":[{"id":"a","position":[0,0,1],"shape":{"kind":"sphere","radius":0.1}}]}');
+    const scene = drawable('{"schema":"covr.scene.v2","name":"n","arena":{"min":[0,0],"max":[1,1]},"objects":[{"id":"a","position":[0,0,1],"shape":{"kind":"sphere","radius":0.1}}]}');
     expect(scene?.objects[0]).toMatchObject({ yaw: 0, prior: 1, enabled: true });
     expect(drawable("{")).toBeNull();
     expect(nameIn('{"name": 3}')).toBeNull();

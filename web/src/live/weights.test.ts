@@ -5,7 +5,7 @@ import { barsOf, heavierThan, NO_WEIGHTS, servedIn, weigh } from "./weights";
 const SEC = 1e6;
 
 function object(id: string, weight: number): ObjectState {
-  return { id, weight, probability: 0, prior: 1, column_place_m: [0, 0], arrival_secs: 1, touch_secs: null, late_by_s: null, in_time_probability: null, angle_rad: null, distance_m: null };
+  return { id, weight, probability: 0, prior: 1, enabled: true, column_place_m: [0, 0], arrival_secs: 1, touch_secs: null, late_by_s: null, in_time_probability: null, angle_rad: null, distance_m: null };
 }
 
 function after(...moments: readonly (readonly [number, readonly ObjectState[], string | null])[]): typeof NO_WEIGHTS {

@@ -102,6 +102,14 @@ function textOf(event: WireEvent, label: (object: string) => string): EventWords
       return of(text.scene_event, ["name"]);
     case "scene_activated":
       return of(text.scene_activated, ["name", "author"]);
+    case "state_entered": {
+      const by = field("by");
+      const what = field("object") ?? field("zone") ?? field("event") ?? field("cue") ?? field("reason") ?? "";
+      const why = by !== null && isStateCause(by) ? text.stateBy[by](field("name") ?? "", field("object") === null ? what : label(what)) : null;
+      return of(text.state_entered, ["state"], spoken(why));
+    }
+    case "scenario_cut":
+      return of(text.scenario_cut, ["state"]);
     case "client_connected":
     case "client_gone":
       return of(text[event.kind], ["client"]);
@@ -162,6 +170,10 @@ function fieldsOf(detail: unknown): Readonly<Record<string, unknown>> {
 
 function mapped(value: string | null, map: (value: string) => string): string | null {
   return value === null ? null : map(value);
+}
+
+function isStateCause(by: string): by is keyof ReturnType<typeof words>["desk"]["events"]["stateBy"] {
+  return Object.hasOwn(words().desk.events.stateBy, by);
 }
 
 function isMode(value: string | null): value is Mode {

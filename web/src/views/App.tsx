@@ -18,6 +18,7 @@ import { Tour } from "../ui/Tour";
 import { HelpView } from "./HelpView";
 import { LiveView } from "./LiveView";
 import { createRoute } from "./route";
+import { ScenarioView } from "./ScenarioView";
 import { ScenesView } from "./ScenesView";
 import { SessionsView } from "./SessionsView";
 import { MachineView } from "./MachineView";
@@ -85,6 +86,9 @@ export function App(): JSX.Element {
         <Switch>
           <Match when={route().view === "live"}>
             <LiveView live={live} author={author()} preferences={store} />
+          </Match>
+          <Match when={route().view === "scenario"}>
+            <ScenarioView live={live} />
           </Match>
           <Match when={route().view === "scenes"}>
             <ScenesView live={live} upload={upload} author={author()} />

@@ -2,7 +2,7 @@
 import { createSignal, onCleanup, onMount, type Accessor } from "solid-js";
 
 /** The views, in the order of the navigation. */
-export const VIEWS = ["live", "scenes", "sessions", "machine", "settings", "help"] as const;
+export const VIEWS = ["live", "scenario", "scenes", "sessions", "machine", "settings", "help"] as const;
 
 /** A view by its name in the address. */
 export type ViewName = (typeof VIEWS)[number];

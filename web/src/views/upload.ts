@@ -4,14 +4,14 @@
  */
 import { createEffect, createSignal, onCleanup, type Accessor } from "solid-js";
 import { checkScene, Problem, replaceScene, uploadScene } from "../api/http";
-import type { SceneError } from "../api/types";
+import type { SceneError, SceneWarning } from "../api/types";
 import { moveErrors } from "../lib/sceneText";
 import { troubleOf } from "../lib/trouble";
 
 /** What the server says of a text. */
 export type Check =
   | { readonly kind: "checking"; readonly errors: readonly SceneError[] }
-  | { readonly kind: "passed"; readonly name: string; readonly objects: number; readonly errors: readonly [] }
+  | { readonly kind: "passed"; readonly name: string; readonly objects: number; readonly warnings: readonly SceneWarning[]; readonly errors: readonly [] }
   | { readonly kind: "refused"; readonly detail: string; readonly errors: readonly SceneError[] }
   | { readonly kind: "failed"; readonly detail: string; readonly errors: readonly SceneError[] };
 
@@ -142,8 +142,8 @@ export function createUpload(author: Accessor<string>): Upload {
 
 async function checked(text: string, author: string): Promise<Check> {
   try {
-    const { name, objects } = await checkScene(text, author);
-    return { kind: "passed", name, objects, errors: [] };
+    const { name, objects, warnings } = await checkScene(text, author);
+    return { kind: "passed", name, objects, warnings, errors: [] };
   } catch (error) {
     if (error instanceof Problem && (error.status === 400 || error.status === 422)) {
       return { kind: "refused", detail: error.message, errors: error.errors };

@@ -56,6 +56,9 @@ pub const fn dashboard_key(message: &FromDashboard) -> &'static str {
             MachineRequest::ConfirmOrigin(_) => "dashboard confirm_origin",
             MachineRequest::ConfirmLeft(_) => "dashboard confirm_left",
             MachineRequest::ConfirmClear => "dashboard confirm_clear",
+            MachineRequest::Cue(_) => "dashboard cue",
+            MachineRequest::SkipTo(_) => "dashboard skip_to",
+            MachineRequest::Rewind => "dashboard rewind",
         },
     }
 }
@@ -164,6 +167,12 @@ const TABLE: &[(&str, Who)] = &[
     ("dashboard confirm_origin", RUN),
     ("dashboard confirm_left", RUN),
     ("dashboard confirm_clear", RUN),
+    ("POST /api/v1/scenario/cue", RUN),
+    ("POST /api/v1/scenario/skip", RUN),
+    ("POST /api/v1/scenario/rewind", RUN),
+    ("dashboard cue", RUN),
+    ("dashboard skip_to", RUN),
+    ("dashboard rewind", RUN),
 ];
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use covr_wire::calibration::{
 };
 use covr_wire::client::Convention;
 use covr_wire::reason::Reason;
-use covr_wire::scene::parse_scene;
+use covr_wire::scene::{parse_scene, scene_warnings};
 use serde_json::json;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -226,13 +226,14 @@ async fn edit_scene(
     edited.offset = *offset_m;
     edited.facing = facing_rad.unwrap_or(edited.facing);
     let text = serde_json::to_vec(&document).unwrap_or_default();
-    parse_scene(&text).map_err(|errors| super::scenes::refused(&text, errors))?;
+    let (_, built) = parse_scene(&text).map_err(|errors| super::scenes::refused(&text, errors))?;
+    let warnings = scene_warnings(&text, &built, &app.config.machine.travel());
     let version = app.store.add_scene_version(scene, &document, asker.author()).await?.ok_or_else(no_prop)?;
     let summary = format!("{asker} wrote calibration {id} of {prop} into scene {scene}, version {version}");
     let detail = json!({ "scene": scene, "version": version, "name": document.name, "calibration": calibration.summary.id });
     app.recorder.record("scene_stored", summary, asker.sign(detail));
     let place = [(header::LOCATION, format!("/api/v1/scenes/{scene}?version={version}"))];
-    Ok((StatusCode::CREATED, place, Json(SceneStored { id: scene, version })).into_response())
+    Ok((StatusCode::CREATED, place, Json(SceneStored { id: scene, version, warnings })).into_response())
 }
 
 async fn choose(app: &App, asker: &Asker, id: &str, is_in_force: bool) -> Result<Json<Calibration>, Problem> {

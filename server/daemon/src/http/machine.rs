@@ -160,7 +160,7 @@ async fn ask(app: &App, asker: &Asker, kind: RequestKind, body: &[u8]) -> Result
     answered(app, &app.request(asker, kind, reason).await?)
 }
 
-fn answered(app: &App, answer: &Answer) -> Result<Json<Answered>, Problem> {
+pub fn answered(app: &App, answer: &Answer) -> Result<Json<Answered>, Problem> {
     let why = app.reason(answer);
     let outcome = match answer.outcome {
         Outcome::Accepted => "accepted",

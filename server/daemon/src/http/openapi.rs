@@ -15,7 +15,7 @@ use covr_wire::calibration::{
 use covr_wire::commissioning::{Commissioning, NewCommissioning};
 use covr_wire::dashboard::{Event, Snapshot};
 use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
-use covr_wire::scene::SceneDocument;
+use covr_wire::scene::{SceneDocument, SceneWarning};
 use schemars::generate::SchemaSettings;
 use serde_json::{Value, json};
 use utoipa::OpenApi;
@@ -89,6 +89,7 @@ fn add_wire_schemas(document: &mut Value) {
     let mut generator = settings.into_generator();
     generator.subschema_for::<Snapshot>();
     generator.subschema_for::<SceneDocument>();
+    generator.subschema_for::<SceneWarning>();
     generator.subschema_for::<RecordedFrames>();
     generator.subschema_for::<SessionDetail>();
     generator.subschema_for::<ConfigInForce>();

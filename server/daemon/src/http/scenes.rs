@@ -9,7 +9,7 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use covr_wire::answers::{SceneSummary, SceneVersionSummary};
 use covr_wire::reason::Reason;
-use covr_wire::scene::{SceneError, parse_scene, scene_schema};
+use covr_wire::scene::{SceneError, SceneWarning, parse_scene, scene_schema, scene_warnings};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use ts_rs::TS;
@@ -28,6 +28,10 @@ pub struct SceneStored {
     pub id: i64,
     /// Its version.
     pub version: i64,
+    /// What is worth a second look: what this machine cannot serve well, and its scenario.
+    #[schema(schema_with = warnings_schema)]
+    #[ts(type = "import(\"../generated/SceneWarning\").SceneWarning[]")]
+    pub warnings: Vec<SceneWarning>,
 }
 
 /// A scene passed.
@@ -39,6 +43,9 @@ pub struct SceneChecked {
     pub name: String,
     /// How many objects it has.
     pub objects: usize,
+    /// What is worth a second look: what this machine cannot serve well, and its scenario.
+    #[schema(schema_with = warnings_schema)]
+    pub warnings: Vec<SceneWarning>,
 }
 
 /// A scene is active.
@@ -81,20 +88,30 @@ async fn list(State(app): State<Arc<App>>) -> Result<Json<Vec<SceneSummary>>, Pr
     responses((status = 201, body = SceneStored), (status = 400, description = "Not JSON", body = Problem),
         (status = 422, description = "Not a scene, place by place", body = Problem)))]
 async fn add(State(app): State<Arc<App>>, asker: Asker, body: Bytes) -> Result<Response, Problem> {
-    let (document, _) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
+    let (document, scene) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
     let id = app.store.add_scene(&document, asker.author()).await?;
     record_stored(&app, &asker, id, 1, &document.name);
     let place = [(header::LOCATION, format!("/api/v1/scenes/{id}"))];
-    Ok((StatusCode::CREATED, place, Json(SceneStored { id, version: 1 })).into_response())
+    Ok((
+        StatusCode::CREATED,
+        place,
+        Json(SceneStored {
+            id,
+            version: 1,
+            warnings: scene_warnings(&body, &scene, &app.config.machine.travel()),
+        }),
+    )
+        .into_response())
 }
 
 /// Check a scene and store nothing.
 #[utoipa::path(post, path = "/scenes/check", tag = "scenes", request_body = ref("#/components/schemas/SceneDocument"),
     responses((status = 200, body = SceneChecked), (status = 400, description = "Not JSON", body = Problem),
         (status = 422, description = "Not a scene, place by place", body = Problem)))]
-async fn check(body: Bytes) -> Result<Json<SceneChecked>, Problem> {
-    let (document, _) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
-    Ok(Json(SceneChecked { valid: true, objects: document.objects.len(), name: document.name }))
+async fn check(State(app): State<Arc<App>>, body: Bytes) -> Result<Json<SceneChecked>, Problem> {
+    let (document, scene) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
+    let warnings = scene_warnings(&body, &scene, &app.config.machine.travel());
+    Ok(Json(SceneChecked { valid: true, objects: document.objects.len(), name: document.name, warnings }))
 }
 
 /// A scene's document. Version, author and date are in the headers `X-Covr-Version`, `X-Covr-Author` and `X-Covr-Created`.
@@ -141,7 +158,7 @@ async fn replace(
     Path(id): Path<String>,
     body: Bytes,
 ) -> Result<Json<SceneStored>, Problem> {
-    let (document, _) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
+    let (document, scene) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
     let id_number = number(&id)?;
     let version = app
         .store
@@ -149,7 +166,11 @@ async fn replace(
         .await?
         .ok_or_else(|| no_scene(&id, None))?;
     record_stored(&app, &asker, id_number, version, &document.name);
-    Ok(Json(SceneStored { id: id_number, version }))
+    Ok(Json(SceneStored {
+        id: id_number,
+        version,
+        warnings: scene_warnings(&body, &scene, &app.config.machine.travel()),
+    }))
 }
 
 /// Play a scene: its newest version, or the one named. Its priors start from the document.
@@ -210,6 +231,11 @@ pub(super) fn refused(text: &[u8], errors: Vec<SceneError>) -> Problem {
         .collect();
     let detail = format!("{first}{more}");
     if is_json { Problem::invalid(detail, items) } else { Problem::malformed(detail, items) }
+}
+
+/// The wire's own schema, which the document has.
+fn warnings_schema() -> utoipa::openapi::schema::Array {
+    utoipa::openapi::schema::Array::new(utoipa::openapi::Ref::from_schema_name("SceneWarning"))
 }
 
 fn number(id: &str) -> Result<i64, Problem> {

@@ -8,7 +8,7 @@
 use std::io::{Read, Write};
 
 use covr_wire::dashboard::Mode;
-use covr_wire::records::{RecordedColumn, RecordedFrame, RecordedObject, RecordedPerson};
+use covr_wire::records::{RecordedColumn, RecordedFrame, RecordedObject, RecordedPerson, RecordedScenario};
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
@@ -51,6 +51,11 @@ struct Lean {
     persons: Vec<RecordedPerson>,
     /// Index, weight, probability, prior of what is not as in the frame before.
     changed: Vec<(usize, f64, f64, f64)>,
+    /// Index of what is enabled and was not in the frame before, or the other way; before the first everything is.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    switched: Vec<(usize, bool)>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scenario: Option<RecordedScenario>,
 }
 
 /// Whether two frames can be in one chunk: the same objects.
@@ -70,6 +75,12 @@ pub fn encode(frames: &[RecordedFrame]) -> Result<Vec<u8>, ChunkError> {
             mode: frame.mode,
             column: frame.column.clone(),
             persons: frame.persons.clone(),
+            switched: objects
+                .clone()
+                .filter(|(i, now)| was(*i).is_none_or(|was| was.enabled) != now.enabled)
+                .map(|(i, now)| (i, now.enabled))
+                .collect(),
+            scenario: frame.scenario.clone(),
             changed: objects
                 .filter(|(i, now)| was(*i) != Some(now))
                 .map(|(i, now)| (i, now.weight, now.probability, now.prior))
@@ -89,7 +100,8 @@ pub fn decode(document: &[u8]) -> Result<Vec<RecordedFrame>, ChunkError> {
     let mut json = Vec::new();
     ZlibDecoder::new(document).take(MOST_BYTES).read_to_end(&mut json)?;
     let Document { objects: ids, frames } = serde_json::from_slice(&json)?;
-    let nothing = |id: String| RecordedObject { id, weight: 0.0, probability: 0.0, prior: 0.0 };
+    let nothing =
+        |id: String| RecordedObject { id, weight: 0.0, probability: 0.0, prior: 0.0, enabled: true };
     let mut objects: Vec<RecordedObject> = ids.into_iter().map(nothing).collect();
     let mut at_micros = 0;
     let whole = frames.into_iter().enumerate().map(|(frame, lean)| {
@@ -99,8 +111,13 @@ pub fn decode(document: &[u8]) -> Result<Vec<RecordedFrame>, ChunkError> {
             let known = objects.get_mut(object).ok_or(unknown)?;
             (known.weight, known.probability, known.prior) = (weight, probability, prior);
         }
+        for (object, enabled) in lean.switched {
+            let unknown = ChunkError::UnknownObject { frame, object, objects: objects.len() };
+            objects.get_mut(object).ok_or(unknown)?.enabled = enabled;
+        }
         Ok(RecordedFrame {
             at_micros,
+            scenario: lean.scenario,
             mode: lean.mode,
             column: lean.column,
             persons: lean.persons,
@@ -117,6 +134,7 @@ const MOST_BYTES: u64 = 64 * 1024 * 1024;
 pub(crate) mod tests {
     use super::*;
     use covr_wire::dashboard::Activity;
+    use covr_wire::scene::ValueDocument;
 
     /// A made-up frame of so many persons and objects; everything in it moves with `tick`.
     pub(crate) fn frame(tick: i64, persons: u32, objects: usize) -> RecordedFrame {
@@ -154,9 +172,16 @@ pub(crate) mod tests {
                 .map(|i| {
                     let weight = round(0.5 + 0.5 * (0.3 * t + i as f64).sin());
                     let probability = round(weight / objects as f64);
-                    RecordedObject { id: format!("object {i}"), weight, probability, prior: 1.0 }
+                    let enabled = (tick / 10 + i as i64) % 3 != 0;
+                    RecordedObject { id: format!("object {i}"), weight, probability, prior: 1.0, enabled }
                 })
                 .collect(),
+            scenario: (tick % 4 != 0).then(|| RecordedScenario {
+                state: format!("state {}", tick / 20),
+                in_state_secs: round(t),
+                runs: true,
+                variables: [("n".to_owned(), ValueDocument::Integer(tick))].into(),
+            }),
         }
     }
 

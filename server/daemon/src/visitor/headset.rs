@@ -167,7 +167,8 @@ impl Headset {
             }
             ToClient::Stop(stop) => tracing::info!(mode = ?stop.mode, "the machine is not stopped"),
             ToClient::Error(error) => tracing::warn!(%error, "the server refused a message"),
-            ToClient::Column(_) | ToClient::Prediction(_) => {}
+            ToClient::Scenario(now) => tracing::info!(state = now.state, runs = now.runs, "the scenario"),
+            ToClient::Column(_) | ToClient::Prediction(_) | ToClient::EventAnswered(_) => {}
         }
         Ok(())
     }

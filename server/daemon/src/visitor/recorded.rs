@@ -97,6 +97,8 @@ pub fn scene_of(recording: &Recording) -> Option<SceneDocument> {
     }
     let what = recording.mode.as_deref().map(|mode| format!(", {mode}")).unwrap_or_default();
     Some(SceneDocument {
+        zones: Vec::new(),
+        scenario: None,
         schema: SCHEMA.into(),
         name: format!("Recorded: {}{what}", recording.dataset),
         description: "The targets of a recording, as spheres.".into(),

@@ -13,7 +13,7 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use covr_engine::time::{Span, Time};
 use covr_wire::client::{
-    ActiveScene, ClientHello, ColumnNow, Encoding, Frame, Prediction, StopState, ToClient,
+    ActiveScene, ClientHello, ColumnNow, Encoding, Frame, Prediction, ScenarioNow, StopState, ToClient,
 };
 use covr_wire::convention::ClientFrame;
 use futures_util::StreamExt;
@@ -70,7 +70,7 @@ pub async fn upgrade(
 async fn serve(app: Arc<App>, socket: WebSocket, encoding: Encoding, newcomer: Newcomer) {
     let (sink, stream) = socket.split();
     let (replies, replies_out) = mpsc::channel(REPLY_QUEUE);
-    let guest = Guest::new(app.clone(), encoding, newcomer);
+    let guest = Guest::new(app.clone(), encoding, newcomer, replies.clone());
     let writer = write(app.clone(), sink, encoding, replies_out);
     tokio::pin!(writer);
     tokio::select! {
@@ -152,6 +152,7 @@ async fn write(
     let mut frame: Option<ClientFrame> = None;
     let mut next_prediction = Time::ZERO;
     let mut last_stop: Option<StopState> = None;
+    let mut last_scenario: Option<ScenarioNow> = None;
     loop {
         tokio::select! {
             biased;
@@ -195,6 +196,13 @@ async fn write(
                 if last_stop.as_ref() != Some(&stop) {
                     say(&mut sink, encoding, &ToClient::Stop(stop.clone())).await?;
                     last_stop = Some(stop);
+                }
+                let scenario = ScenarioNow::new(&now.snapshot);
+                if last_scenario != scenario {
+                    last_scenario.clone_from(&scenario);
+                    if let Some(scenario) = scenario {
+                        say(&mut sink, encoding, &ToClient::Scenario(scenario)).await?;
+                    }
                 }
                 let column = ColumnNow::new(&now.snapshot, &now.scene, frame);
                 say(&mut sink, encoding, &ToClient::Column(column)).await?;

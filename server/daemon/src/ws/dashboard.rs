@@ -247,6 +247,12 @@ async fn ask(
         MachineRequest::Reset if reason.is_none() => return Err(Reason::ResetNeedsReason),
         MachineRequest::Reset => app.request(asker, RequestKind::Reset, reason).await,
         MachineRequest::ConfirmClear => app.confirm_clear(asker).await,
+        MachineRequest::Cue(name) => app.cue(asker, name).await,
+        MachineRequest::SkipTo(_) | MachineRequest::Rewind if reason.is_none() => {
+            return Err(Reason::SkipNeedsReason);
+        }
+        MachineRequest::SkipTo(state) => app.skip_to(asker, state, reason.unwrap_or_default()).await,
+        MachineRequest::Rewind => app.rewind(asker, reason.unwrap_or_default()).await,
         MachineRequest::ConfirmOrigin(person) if app.persons.is_inside(PersonId(person)) => {
             app.confirm_origin(asker, PersonId(person)).await
         }

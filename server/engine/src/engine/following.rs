@@ -32,6 +32,17 @@ pub struct Wish {
     pub touch_secs: Option<f64>,
 }
 
+/// What can be served, and how likely it is.
+#[derive(Debug, Clone, Copy)]
+pub struct Offer<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The priors in force, by object.
+    pub priors: &'a [f64],
+    /// Which objects can be served now.
+    pub enabled: &'a [bool],
+}
+
 /// One visitor with a rule of their own.
 #[derive(Debug, Clone)]
 struct Visitor {
@@ -52,8 +63,9 @@ pub struct Following {
     motion: MotionName,
     standing: StandingName,
     visitors: Vec<Visitor>,
-    /// The priors that the beliefs are about.
+    /// The priors that the beliefs are about, and which objects were enabled then.
     believed_priors: Vec<f64>,
+    believed_enabled: Vec<bool>,
     serves: Option<PersonId>,
     wish: Option<Wish>,
     proxy: Proxy,
@@ -86,6 +98,7 @@ impl Following {
             standing,
             visitors: Vec::new(),
             believed_priors: Vec::new(),
+            believed_enabled: Vec::new(),
             serves: None,
             wish: None,
             proxy: Proxy::at(Floor::new(0.0, 0.0)),
@@ -106,13 +119,12 @@ impl Following {
     pub fn wanted(
         &mut self,
         persons: &[Person],
-        scene: &Scene,
-        priors: &[f64],
+        offer: &Offer<'_>,
         now: Time,
         parameters: &Parameters,
         limits: &Limits,
     ) -> Option<Wish> {
-        let wish = self.weigh(persons, scene, priors, now, parameters, limits);
+        let wish = self.weigh(persons, offer, now, parameters, limits);
         wish.filter(|_| !persons.iter().any(Person::is_unseen))
     }
 
@@ -120,17 +132,18 @@ impl Following {
     fn weigh(
         &mut self,
         persons: &[Person],
-        scene: &Scene,
-        priors: &[f64],
+        &Offer { scene, priors, enabled }: &Offer<'_>,
         now: Time,
         parameters: &Parameters,
         limits: &Limits,
     ) -> Option<Wish> {
         self.foresee(persons.iter().filter_map(|p| p.threat(now)));
         self.visitors.retain(|v| persons.iter().any(|p| p.id() == v.person));
-        if self.believed_priors != priors {
+        if self.believed_priors != priors || self.believed_enabled != enabled {
             self.believed_priors.clear();
             self.believed_priors.extend_from_slice(priors);
+            self.believed_enabled.clear();
+            self.believed_enabled.extend_from_slice(enabled);
             self.visitors.iter_mut().for_each(|v| v.believed_at = None);
         }
         self.clearances_m.clear();
@@ -147,7 +160,7 @@ impl Following {
             });
             let visitor = &mut self.visitors[index];
             if visitor.believed_at != Some(sample.taken_at) {
-                intention::sights(scene, priors, &sample.pose, &mut visitor.sights);
+                intention::sights(scene, priors, enabled, &sample.pose, &mut visitor.sights);
                 let view = View {
                     taken_at: sample.taken_at,
                     head: sample.pose,
@@ -227,6 +240,11 @@ impl Following {
         }
         self.announced = Some((wish.visitor, index));
         Some(EventKind::Served { person: wish.visitor, object: index })
+    }
+
+    /// The objects as this visitor has them, of the newest pose.
+    pub fn sights_of(&self, person: PersonId) -> Option<&[Sight]> {
+        self.visitors.iter().find(|v| v.person == person).map(|v| &v.sights[..])
     }
 
     /// What is in the way of the wanted motion.

@@ -73,7 +73,7 @@ impl Engine {
     }
 
     /// It follows people, or will when a protective stop is over.
-    fn is_armed(&self) -> bool {
+    pub(super) fn is_armed(&self) -> bool {
         self.mode == Mode::Following || self.mode == Mode::ProtectiveStop && self.resumes == Mode::Following
     }
 
@@ -127,8 +127,14 @@ impl Engine {
             self.braking = Braking::begin(now, &report, &self.config.limits, self.parameters.reaction);
         }
         if to != self.mode {
+            let was_armed = self.is_armed();
             self.pending.push(EventKind::ModeChanged { from: self.mode, to, rule, because });
             self.mode = to;
+            match (was_armed, self.is_armed()) {
+                (false, true) => self.begin_to_play(),
+                (true, false) => self.end_the_play(),
+                _ => {}
+            }
         }
         self.mode_since = now;
         self.speed_then_mps = self.report.map_or(0.0, |r| r.velocity.norm());

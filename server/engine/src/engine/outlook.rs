@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::Engine;
-use super::following::{Following, Wish};
+use super::following::{Following, Offer, Wish};
 use crate::frames::{Floor, Planar};
 use crate::intention::Belief;
 use crate::machine::{Limits, Travel};
@@ -28,6 +28,7 @@ pub struct Outlook {
     at: Time,
     scene: Arc<Scene>,
     priors: Vec<f64>,
+    enabled: Vec<bool>,
     limits: Limits,
     travel: Travel,
     parameters: Parameters,
@@ -74,6 +75,7 @@ impl Engine {
             at: now,
             scene: Arc::clone(&self.scene),
             priors: self.priors.clone(),
+            enabled: self.enabled.clone(),
             limits: self.config.limits,
             travel: self.config.travel,
             parameters: self.parameters,
@@ -134,14 +136,8 @@ impl Outlook {
 
     /// With everybody as they are: a second look would find the same, so one is enough for the whole way.
     fn weigh(&mut self) -> Option<Wish> {
-        self.following.wanted(
-            &self.persons,
-            &self.scene,
-            &self.priors,
-            self.at,
-            &self.parameters,
-            &self.limits,
-        )
+        let offer = Offer { scene: &self.scene, priors: &self.priors, enabled: &self.enabled };
+        self.following.wanted(&self.persons, &offer, self.at, &self.parameters, &self.limits)
     }
 
     fn roll(self, wish: Option<Wish>) -> Vec<Floor> {

@@ -37,6 +37,14 @@ pub enum Request {
     LetGo,
     /// Another scene, whole; refused while homing.
     ActivateScene(Arc<Scene>),
+    /// A game master's cue to the scenario, by its name.
+    Cue(String),
+    /// Something that a VR client tells the scenario, by its name.
+    ClientEvent(String),
+    /// Skip to the state of this id, for this reason.
+    SkipTo(String, String),
+    /// Back to the state before, for this reason.
+    Rewind(String),
 }
 
 /// What came of a request.
@@ -71,6 +79,10 @@ impl Engine {
             Request::Jog(order) => self.take_jog(now, order),
             Request::LetGo => self.let_go_of_jog(),
             Request::ActivateScene(scene) => self.activate(scene),
+            Request::Cue(name) => self.cue(&name),
+            Request::ClientEvent(name) => self.client_event(&name),
+            Request::SkipTo(state, reason) => self.skip_to(&state, reason),
+            Request::Rewind(reason) => self.rewind(reason),
         };
         self.record(now);
         answer
@@ -175,6 +187,7 @@ impl Engine {
         self.persons.retain(|p| p.id() != id);
         if self.persons.len() < before {
             self.pending.push(EventKind::PersonLeft(id));
+            self.leave_the_play(id);
         }
     }
 
@@ -189,6 +202,8 @@ impl Engine {
         }
         for (index, prior) in changes {
             self.priors[*index] = *prior;
+            // Against the scenario's own, until the state is left.
+            self.prior_edits[*index] = Some(*prior);
         }
         accepted(Reason::PriorsSet(changes.len()))
     }
@@ -206,12 +221,9 @@ impl Engine {
                 return refused(Reason::ColumnInKeepOut { keep_out, required_m: self.parameters.radius_m });
             }
         }
-        self.priors = scene.spec().objects.iter().map(|o| o.prior).collect();
-        self.scene = scene;
+        self.set_the_stage(scene);
         self.following.forget_visitors();
-        for person in &mut self.persons {
-            person.place_among(&self.scene);
-        }
+        self.place_everybody();
         accepted(Reason::SceneActivated)
     }
 }

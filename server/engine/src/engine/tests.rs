@@ -5,6 +5,7 @@ mod game_master;
 mod inputs;
 mod jog;
 mod modes;
+mod playing;
 mod rules;
 mod shown;
 

@@ -23,6 +23,8 @@ pub struct Stage<'a> {
     pub zones: &'a [&'a str],
     /// The scene's own priors.
     pub priors: &'a [f64],
+    /// Which objects the scene itself has not switched off.
+    pub enabled: &'a [bool],
 }
 
 impl Scenario {
@@ -118,6 +120,14 @@ impl Findings<'_> {
                 self.add(&path, words);
             }
         }
+        for (object, id) in self.stage.objects.iter().enumerate() {
+            if state.enabled[object] && !self.stage.enabled[object] {
+                self.add(
+                    &format!("{at}.enabled"),
+                    format!("the scene has \"{id}\" switched off: it is not served here either"),
+                );
+            }
+        }
         self.priors(&at, index);
     }
 
@@ -148,7 +158,7 @@ impl Findings<'_> {
             }
         }
         if let Some(when) = &way.when {
-            when.visit(&mut |part| match part {
+            awaited(when, &mut |part| match part {
                 Condition::Touching { object, .. } if !can_be_served(*object) => {
                     found.push((format!("{at}.when"), "waits for a touch of", *object));
                 }
@@ -182,32 +192,11 @@ impl Findings<'_> {
     }
 
     fn variables(&mut self) {
-        let ways = || {
-            let own = self.scenario.states.iter().flat_map(|state| &state.transitions);
-            own.chain(&self.scenario.anywhere)
-        };
-        let mut found = Vec::new();
         for (index, variable) in self.scenario.variables.iter().enumerate() {
-            let mut is_read = false;
-            ways().filter_map(|way| way.when.as_ref()).for_each(|when| {
-                when.visit(&mut |part| {
-                    is_read |= matches!(part, Condition::Variable { variable, .. } if *variable == index);
-                });
-            });
-            let path = format!("variables[{index}]");
             if !self.scenario.sets(index) {
-                found.push((path, format!("nothing ever changes \"{}\"", variable.id)));
-            } else if !is_read {
-                found.push((
-                    path,
-                    format!(
-                        "no condition looks at \"{}\"; VR clients are told of it all the same",
-                        variable.id
-                    ),
-                ));
+                self.add(&format!("variables[{index}]"), format!("nothing ever changes \"{}\"", variable.id));
             }
         }
-        found.into_iter().for_each(|(path, words)| self.add(&path, words));
     }
 
     fn never_used(&mut self) {
@@ -240,6 +229,15 @@ impl Findings<'_> {
 
     fn add(&mut self, path: &str, words: String) {
         self.found.push(Finding { path: path.to_owned(), words });
+    }
+}
+
+/// What a condition waits for: what it wants not to be so is left out.
+fn awaited(condition: &Condition<usize>, seen: &mut impl FnMut(&Condition<usize>)) {
+    match condition {
+        Condition::All(parts) | Condition::Any(parts) => parts.iter().for_each(|part| awaited(part, seen)),
+        Condition::Not(_) => {}
+        atom => seen(atom),
     }
 }
 

@@ -17,11 +17,18 @@ pub struct Now<'a> {
     pub clock: Span,
 }
 
+impl Now<'_> {
+    /// For how long something has lasted in this state: what began before it counts from its entry.
+    fn lasts(&self, since: Span) -> Span {
+        (self.clock - since).min(self.in_state)
+    }
+}
+
 impl Condition<usize> {
     /// Whether it holds.
     pub fn holds(&self, now: &Now<'_>) -> bool {
         let lasts = |since: Option<Span>, secs: f64| {
-            since.is_some_and(|since| now.clock - since >= Span::from_secs(secs))
+            since.is_some_and(|since| now.lasts(since) >= Span::from_secs(secs))
         };
         match self {
             Self::Touching { object, secs } => lasts(now.senses.touched_since(*object), *secs),
@@ -41,7 +48,7 @@ impl Condition<usize> {
     /// In how many seconds it holds if everybody goes on with what they do; 0 when it does now, infinite when time alone will not do.
     pub fn due_secs(&self, now: &Now<'_>) -> f64 {
         let left = |since: Option<Span>, secs: f64| {
-            since.map_or(f64::INFINITY, |since| (secs - (now.clock - since).secs()).max(0.0))
+            since.map_or(f64::INFINITY, |since| (secs - now.lasts(since).secs()).max(0.0))
         };
         let at_once = |holds: bool| if holds { 0.0 } else { f64::INFINITY };
         match self {

@@ -9,7 +9,7 @@ use super::spec::{Act, Comparison, Condition, Value};
 /// A quantity that conditions bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
-    /// For how long an object is touched, s; -1 when it is not.
+    /// For how long an object is touched in the state, s; -1 when it is not.
     Touch(usize),
     /// For how long it is looked at, s; -1 when it is not.
     Look(usize),
@@ -62,26 +62,26 @@ impl Conjunction {
 #[derive(Debug, Clone, Copy)]
 pub struct Range<'a> {
     scenario: &'a Scenario,
-    /// The time in the state.
-    in_state: Interval,
+    /// The state has lasted for less, s; and so has what lasts in it.
+    under_secs: f64,
 }
 
 impl<'a> Range<'a> {
     /// Of a state that may have lasted.
     pub const fn at_any_time(scenario: &'a Scenario) -> Self {
-        Self { scenario, in_state: (0.0, f64::INFINITY) }
+        Self { scenario, under_secs: f64::INFINITY }
     }
 
     /// Of a state that has just been entered.
     pub const fn at_entry(scenario: &'a Scenario) -> Self {
-        Self { scenario, in_state: (0.0, f64::MIN_POSITIVE) }
+        Self { scenario, under_secs: f64::MIN_POSITIVE }
     }
 
     fn of(&self, quantity: Quantity) -> Interval {
         match quantity {
-            Quantity::Touch(_) | Quantity::Look(_) => (-1.0, f64::INFINITY),
+            Quantity::Touch(_) | Quantity::Look(_) => (-1.0, self.under_secs),
             Quantity::Zone(_) | Quantity::Place(_) => (0.0, 2.0),
-            Quantity::InState => self.in_state,
+            Quantity::InState => (0.0, self.under_secs),
             Quantity::Variable(index) => {
                 let start = self.scenario.variables[index].start;
                 if !self.scenario.sets(index) {

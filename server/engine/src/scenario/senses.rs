@@ -127,10 +127,10 @@ fn since(known: &[Since], object: usize) -> Option<Span> {
 
 /// A zone is left when the head is so far outside it, m.
 const LEAVES_M: f64 = 0.05;
-/// Somebody looks at an object within this of their view axis, rad: about six degrees, what a head turned to something leaves to the eyes.
-const LOOKS_RAD: f64 = 0.1;
+/// Somebody looks at an object within this of their view axis, rad: ten degrees, which a head turned to something leaves to the eyes.
+const LOOKS_RAD: f64 = 0.175;
 /// And away from it beyond this, rad.
-const LOOKS_AWAY_RAD: f64 = 0.2;
+const LOOKS_AWAY_RAD: f64 = 0.26;
 
 #[cfg(test)]
 mod tests {
@@ -177,12 +177,12 @@ mod tests {
     #[test]
     fn a_look_outlasts_a_small_turn_of_the_head() {
         let mut senses = Senses::default();
-        senses.look(ADA, 0, 0.15, Span::ZERO);
+        senses.look(ADA, 0, 0.2, Span::ZERO);
         assert_eq!(senses.looked_at_since(0), None);
         senses.look(ADA, 0, 0.05, Span::from_millis(10));
-        senses.look(ADA, 0, 0.15, Span::from_millis(20));
+        senses.look(ADA, 0, 0.2, Span::from_millis(20));
         assert_eq!(senses.looked_at_since(0), Some(Span::from_millis(10)));
-        senses.look(ADA, 0, 0.25, Span::from_millis(30));
+        senses.look(ADA, 0, 0.3, Span::from_millis(30));
         assert_eq!(senses.looked_at_since(0), None);
     }
 }

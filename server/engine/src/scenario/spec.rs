@@ -116,7 +116,7 @@ pub enum Trigger<R> {
 /// Something that holds or does not. People are not told apart: it holds if it holds for anybody.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition<R> {
-    /// Somebody has touched the object for so long without a break.
+    /// Somebody has touched the object for so long without a break, counted from the entry of the state at the earliest.
     Touching {
         /// The object.
         object: R,
@@ -125,7 +125,7 @@ pub enum Condition<R> {
     },
     /// Somebody is in the zone.
     InZone(R),
-    /// Somebody has looked at the object for so long without a break.
+    /// Somebody has looked at the object for so long without a break, counted from the entry of the state at the earliest.
     LooksAt {
         /// The object.
         object: R,

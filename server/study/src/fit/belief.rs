@@ -108,9 +108,10 @@ impl Watched {
             person.take_pose(
                 PoseSample { taken_at: sample.at, pose, tracked: true, worn: true },
                 &scene,
+                scene.enabled(),
                 &parameters,
             );
-            sights(&scene, &priors, &pose, &mut now);
+            sights(&scene, &priors, scene.enabled(), &pose, &mut now);
             seen.extend_from_slice(&now);
             heads.push((sample.at, pose, person.velocity()));
         }

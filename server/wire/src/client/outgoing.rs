@@ -10,7 +10,8 @@ use covr_engine::snapshot::Snapshot;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{
-    ActiveScene, ClientLimits, ColumnNow, MAX_FRAME_BYTES, ObjectPlace, Prediction, PropAt, StopState,
+    ActiveScene, ClientLimits, ColumnNow, MAX_FRAME_BYTES, ObjectPlace, Prediction, PropAt, ScenarioNow,
+    StopState,
 };
 use crate::convention::ClientFrame;
 use crate::dashboard::clears_when;
@@ -90,6 +91,20 @@ impl Prediction {
             late_by_s: object.late_by_secs,
             in_time_probability: object.in_time_probability,
             offset_m: object.offset.map(|offset| frame.client_shift_m(offset)),
+        })
+    }
+}
+
+impl ScenarioNow {
+    /// The scenario of a snapshot; none where the scene has none.
+    pub fn new(state: &Snapshot) -> Option<Self> {
+        let scenario = state.scenario.as_ref()?;
+        let variables = scenario.variables.iter().map(|(id, value)| (id.clone(), (*value).into()));
+        Some(Self {
+            state: scenario.state.clone(),
+            runs: scenario.runs,
+            entered: scenario.entered,
+            variables: variables.collect(),
         })
     }
 }

@@ -1,12 +1,14 @@
 //! What the server says to a VR client.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
 use super::{ClientError, Convention};
-use crate::dashboard::Mode;
-use crate::scene::SceneDocument;
+use crate::dashboard::{Mode, Outcome};
+use crate::scene::{SceneDocument, ValueDocument};
 
 /// What the server says to a client.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
@@ -22,6 +24,10 @@ pub enum ToClient {
     Prediction(Prediction),
     /// Whether the machine is stopped; sent on connection and at each change.
     Stop(StopState),
+    /// The scenario's state; sent on connection and at each change, where the active scene has one.
+    Scenario(ScenarioNow),
+    /// What came of a `scene_event`, where the active scene has a scenario.
+    EventAnswered(EventAnswered),
     /// The answer to a ping.
     ClockPong(ClockPong),
     /// A message was refused.
@@ -155,6 +161,31 @@ pub struct StopState {
     pub reason: Option<String>,
     /// What clears it, in plain words.
     pub clears_when: Option<String>,
+}
+
+/// Where the scenario is. Its states are in the scene's document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct ScenarioNow {
+    /// Id of its state.
+    pub state: String,
+    /// It runs: the machine follows people.
+    pub runs: bool,
+    /// States entered since the run began; the same state entered again counts again.
+    #[ts(type = "number")]
+    pub entered: usize,
+    /// The variables, by id.
+    pub variables: BTreeMap<String, ValueDocument>,
+}
+
+/// What came of a client event.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct EventAnswered {
+    /// Its name.
+    pub name: String,
+    /// `accepted`: a transition was taken for it; `refused`: it is on record, and changed nothing.
+    pub outcome: Outcome,
+    /// Which state the scenario is in, or why nothing changed, in plain words.
+    pub detail: String,
 }
 
 /// The answer to a ping.

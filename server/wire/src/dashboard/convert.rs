@@ -12,9 +12,9 @@ use covr_engine::{Outcome as EngineOutcome, Request};
 
 use super::event::rule_title;
 use super::{
-    Activity, Client, Column, ControlLoop, MachineHealth, MachineRequest, MachineShape, Mode, Object,
-    Outcome, Person, RequestState, RuleState, RuleStatus, SeparationTerm, SeparationTerms, Snapshot,
-    StopCause, ToDashboard,
+    Activity, Client, Column, ControlLoop, MachineHealth, MachineRequest, MachineShape, Mode, NextState,
+    Object, Outcome, Person, RequestState, RuleState, RuleStatus, Scenario, SeparationTerm, SeparationTerms,
+    Snapshot, StopCause, ToDashboard,
 };
 use crate::reason::{self, Reason};
 
@@ -59,6 +59,7 @@ impl Snapshot {
             column: column(state, around.names),
             persons: state.persons.iter().map(|person| self::person(person, around.names)).collect(),
             objects: state.objects.iter().map(Into::into).collect(),
+            scenario: state.scenario.as_ref().map(Into::into),
             intention_rule: state.intention_rule.into(),
             standing: state.standing.into(),
             motion: state.motion.into(),
@@ -83,6 +84,9 @@ impl MachineRequest {
             Self::ConfirmOrigin(person) => Request::ConfirmOrigin(PersonId(*person)),
             Self::ConfirmLeft(person) => Request::ConfirmLeft(PersonId(*person)),
             Self::ConfirmClear => Request::ConfirmClear,
+            Self::Cue(name) => Request::Cue(name.clone()),
+            Self::SkipTo(state) => Request::SkipTo(state.clone(), reason.unwrap_or_default()),
+            Self::Rewind => Request::Rewind(reason.unwrap_or_default()),
         }
     }
 }
@@ -148,6 +152,7 @@ impl From<&engine::ObjectState> for Object {
             weight: object.weight,
             probability: object.probability,
             prior: object.prior,
+            enabled: object.enabled,
             column_place_m: floor(object.column_place),
             arrival_secs: object.arrival_secs,
             touch_secs: object.touch_secs,
@@ -155,6 +160,28 @@ impl From<&engine::ObjectState> for Object {
             in_time_probability: object.in_time_probability,
             angle_rad: object.angle_rad,
             distance_m: object.distance_m,
+        }
+    }
+}
+
+impl From<&engine::ScenarioState> for Scenario {
+    fn from(scenario: &engine::ScenarioState) -> Self {
+        let next = scenario.next.iter().map(|next| NextState {
+            is_from_anywhere: next.is_from_anywhere,
+            index: next.index,
+            to: next.to.clone(),
+            due_secs: next.due_secs,
+        });
+        Self {
+            state: scenario.state.clone(),
+            in_state_secs: scenario.in_state_secs,
+            runs: scenario.runs,
+            entered: scenario.entered,
+            variables: scenario.variables.iter().map(|(id, value)| (id.clone(), (*value).into())).collect(),
+            next: next.collect(),
+            before: scenario.before.clone(),
+            left_in: scenario.left_in.clone(),
+            is_cut: scenario.is_cut,
         }
     }
 }

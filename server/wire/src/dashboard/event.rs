@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use covr_engine::event::{Event as EngineEvent, EventKind};
+use covr_engine::event::{Event as EngineEvent, EventKind, WhyState};
 use covr_engine::observation::PersonId;
 use covr_engine::snapshot::RuleId;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Event, name_of};
 use crate::reason::{Reason, in_words};
@@ -90,8 +90,43 @@ impl Event {
                     json!({"at_m": [at.x, at.y], "why": why}),
                 )
             }
+            EventKind::StateEntered { from, to, why } => {
+                let (words, mut detail) = why_state(why, &who);
+                detail["state"] = (&**to).into();
+                detail["from"] = from.as_deref().into();
+                ("state_entered", format!("the scenario is in {to}: {words}"), detail)
+            }
+            EventKind::ScenarioCut { state } => (
+                "scenario_cut",
+                format!("the scenario went in a circle and waits in {state} for something to happen"),
+                json!({"state": **state}),
+            ),
         };
         Self { at_micros: event.at.micros(), at, kind: kind.into(), summary, detail }
+    }
+}
+
+/// Why a state was entered, in words and as particulars: `by` says what.
+fn why_state(why: &WhyState, who: &impl Fn(&PersonId) -> String) -> (String, Value) {
+    let somebody = |person: &PersonId, does: &str, by: &str, key: &str, id: &String| {
+        let words = format!("{} {does} {id}", who(person));
+        (words, json!({"by": by, "person": person.0, "name": who(person), key: id}))
+    };
+    match why {
+        WhyState::Began => ("the machine was armed".into(), json!({"by": "began"})),
+        WhyState::ConditionHeld => ("its condition held".into(), json!({"by": "condition"})),
+        WhyState::TouchBegan(person, id) => somebody(person, "touched", "touch_began", "object", id),
+        WhyState::TouchEnded(person, id) => somebody(person, "let go of", "touch_ended", "object", id),
+        WhyState::ZoneEntered(person, id) => somebody(person, "entered", "zone_entered", "zone", id),
+        WhyState::ZoneLeft(person, id) => somebody(person, "left", "zone_left", "zone", id),
+        WhyState::ClientEvent(name) => {
+            (format!("the VR client said {name}"), json!({"by": "client_event", "event": name}))
+        }
+        WhyState::Cue(name) => (format!("cue {name}"), json!({"by": "cue", "cue": name})),
+        WhyState::Skipped(reason) => (format!("skipped: {reason}"), json!({"by": "skip", "reason": reason})),
+        WhyState::Rewound(reason) => {
+            (format!("gone back: {reason}"), json!({"by": "rewind", "reason": reason}))
+        }
     }
 }
 
@@ -157,5 +192,11 @@ mod tests {
             because: covr_engine::reason::Reason::SoftwareStop("hand".into()),
         });
         assert_eq!(changed.1, "following to latched stop: R4: software stop: hand");
+        let entered = said(EventKind::StateEntered {
+            from: Some("dark".into()),
+            to: "walls".into(),
+            why: WhyState::ZoneEntered(PersonId(3), "carpet".into()),
+        });
+        assert_eq!(entered, ("state_entered".into(), "the scenario is in walls: Ada entered carpet".into()));
     }
 }

@@ -1,11 +1,14 @@
 //! The whole state at one moment, as dashboards and `GET /api/v1/state` have it: room frame, SI units.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
 
 use super::MachineHealth;
 use crate::reason::Reason;
+use crate::scene::ValueDocument;
 
 /// Everything at one moment; also the body of `GET /api/v1/state`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
@@ -33,6 +36,8 @@ pub struct Snapshot {
     pub persons: Vec<Person>,
     /// Every object of the active scene, in its order.
     pub objects: Vec<Object>,
+    /// The scenario; null where the active scene has none.
+    pub scenario: Option<Scenario>,
     /// The intention rule in use.
     pub intention_rule: String,
     /// Where the column stands while it is not plain what will be touched, by name.
@@ -263,6 +268,8 @@ pub struct Object {
     pub probability: f64,
     /// The prior in force.
     pub prior: f64,
+    /// It can be served now.
+    pub enabled: bool,
     /// Where the column's centre must stand.
     pub column_place_m: [f64; 2],
     /// Seconds until the column is in place for it: by the way that it takes now, people in the way included, where that
@@ -278,6 +285,44 @@ pub struct Object {
     pub angle_rad: Option<f64>,
     /// From the visitor's head to its surface, m; null without a visitor.
     pub distance_m: Option<f64>,
+}
+
+/// The scenario now. Its states and transitions are in the scene's document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct Scenario {
+    /// Id of its state.
+    pub state: String,
+    /// For how long it has been in it, s, on a clock that stands while the machine does not follow people.
+    pub in_state_secs: f64,
+    /// That clock runs.
+    pub runs: bool,
+    /// States entered since the run began.
+    #[ts(type = "number")]
+    pub entered: usize,
+    /// The variables, by id.
+    pub variables: BTreeMap<String, ValueDocument>,
+    /// The ways on from here, in the order in which they are looked at.
+    pub next: Vec<NextState>,
+    /// Id of the state that a rewind leads to; null at the beginning.
+    pub before: Option<String>,
+    /// Id of the state that the last run ended in, if it got beyond its beginning and no other has begun since.
+    pub left_in: Option<String>,
+    /// Its transitions went in a circle and wait for something to happen.
+    pub is_cut: bool,
+}
+
+/// A way on from the scenario's state.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct NextState {
+    /// It is one of the scenario's `anywhere`, else one of the state's `transitions`.
+    pub is_from_anywhere: bool,
+    /// Its index there.
+    #[ts(type = "number")]
+    pub index: usize,
+    /// Id of the state that it leads to; null: the state stays.
+    pub to: Option<String>,
+    /// In how many seconds its condition holds if everybody goes on with what they do, 0: it does; null: time alone will not do.
+    pub due_secs: Option<f64>,
 }
 
 /// The control loop's health.

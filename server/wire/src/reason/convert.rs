@@ -120,6 +120,15 @@ impl Reason {
             Engine::JogSilent => Self::JogSilent,
             Engine::JogNotYet => Self::JogNotYet,
             Engine::JogOver(mode) => Self::JogOver { mode: (*mode).into() },
+            Engine::NoScenario => Self::NoScenario,
+            Engine::ScenarioStands => Self::ScenarioStands,
+            Engine::NoSuchCue { cue, known } => Self::NoSuchCue { cue: cue.clone(), known: known.clone() },
+            Engine::NotAwaited { name, state } => {
+                Self::NotAwaited { name: name.clone(), state: state.clone() }
+            }
+            Engine::NoSuchState(state) => Self::NoSuchState { state: state.clone() },
+            Engine::NothingBefore => Self::NothingBefore,
+            Engine::NowInState(state) => Self::NowInState { state: state.clone() },
         }
     }
 }

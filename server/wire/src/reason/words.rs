@@ -165,6 +165,25 @@ impl fmt::Display for Reason {
                 "the column stands within {required_m:.2} m of the keep-out shape {keep_out}: move it away first"
             ),
             Self::SceneActivated => write!(f, "the scene is active"),
+            Self::NoScenario => write!(f, "the active scene has no scenario"),
+            Self::ScenarioStands => {
+                write!(f, "the scenario stands: it runs while the machine follows people")
+            }
+            Self::NoSuchCue { cue, known } if known.is_empty() => {
+                write!(f, "there is no cue {cue}: this scenario has none")
+            }
+            Self::NoSuchCue { cue, known } => {
+                write!(f, "there is no cue {cue} in this scenario; it knows {}", known.join(", "))
+            }
+            Self::NotAwaited { name, state } => {
+                write!(f, "nothing waits for {name} in the state {state} now")
+            }
+            Self::NoSuchState { state } => write!(f, "there is no state {state} in this scenario"),
+            Self::NothingBefore => {
+                write!(f, "this is the first state of the run: there is nothing to go back to")
+            }
+            Self::NowInState { state } => write!(f, "the scenario is in the state {state}"),
+            Self::SkipNeedsReason => write!(f, "to skip or to go back needs a reason"),
             Self::Busy => write!(f, "busy: the control loop's queue is full; try again"),
             Self::ControlNotRunning => write!(f, "the control loop is not running"),
             Self::DriveSilent { within_millis } => {

@@ -4,7 +4,10 @@
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
-use super::{KeepOutShape, ObjectDocument, PropDocument, SCHEMA, SceneDocument, SceneError, ShapeDocument};
+use super::{
+    KeepOutShape, ObjectDocument, PropDocument, SCHEMA, ScenarioDocument, SceneDocument, SceneError,
+    ShapeDocument,
+};
 
 /// Every problem of a document, in its order.
 pub(super) fn check(document: &SceneDocument) -> Vec<SceneError> {
@@ -30,7 +33,17 @@ pub(super) fn check(document: &SceneDocument) -> Vec<SceneError> {
         let at = format!("$.keep_outs[{i}]");
         problems.text(&format!("{at}.id"), &keep_out.id, 1..=64);
         problems.text(&format!("{at}.label"), &keep_out.label, 0..=80);
-        problems.keep_out(&format!("{at}.shape"), &keep_out.shape);
+        problems.floor_shape(&format!("{at}.shape"), &keep_out.shape);
+    }
+    problems.count("$.zones", document.zones.len(), 0..=100);
+    for (i, zone) in document.zones.iter().enumerate() {
+        let at = format!("$.zones[{i}]");
+        problems.text(&format!("{at}.id"), &zone.id, 1..=64);
+        problems.text(&format!("{at}.label"), &zone.label, 0..=80);
+        problems.floor_shape(&format!("{at}.shape"), &zone.shape);
+    }
+    if let Some(scenario) = &document.scenario {
+        problems.scenario(scenario);
     }
     problems.0
 }
@@ -89,7 +102,19 @@ impl Problems {
         }
     }
 
-    fn keep_out(&mut self, at: &str, shape: &KeepOutShape) {
+    /// What is for people alone; the engine checks the rest.
+    fn scenario(&mut self, scenario: &ScenarioDocument) {
+        for (i, state) in scenario.states.iter().enumerate() {
+            self.text(&format!("$.scenario.states[{i}].label"), &state.label, 0..=80);
+            self.text(&format!("$.scenario.states[{i}].note"), &state.note, 0..=2_000);
+            self.count(&format!("$.scenario.states[{i}].enabled"), state.enabled.len(), 0..=500);
+        }
+        for (path, way) in scenario.ways() {
+            self.text(&format!("$.scenario.{path}.label"), &way.label, 0..=80);
+        }
+    }
+
+    fn floor_shape(&mut self, at: &str, shape: &KeepOutShape) {
         match shape {
             KeepOutShape::Circle { centre, radius } => {
                 self.numbers(&format!("{at}.centre"), centre, ROOM);

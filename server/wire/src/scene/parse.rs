@@ -5,6 +5,9 @@
 
 use std::fmt::{self, Display};
 
+use covr_engine::machine::Travel;
+use covr_engine::placing;
+use covr_engine::scenario::Finding;
 use covr_engine::scene::Scene;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,6 +35,32 @@ pub struct SceneError {
     pub expected: String,
 }
 
+/// Something in a good scene that is worth a second look.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct SceneWarning {
+    /// Where, as a JSON path: `$.scenario.states[3]`.
+    pub path: String,
+    /// Line in the text, from 1; null without a text.
+    pub line: Option<usize>,
+    /// Column in the line, from 1, in bytes; null without a text.
+    pub column: Option<usize>,
+    /// What is found, in plain words.
+    pub found: String,
+}
+
+/// What is worth a second look in a scene that was read from this text: what a machine of this travel cannot serve well, then its
+/// scenario.
+pub fn scene_warnings(text: &[u8], scene: &Scene, travel: &Travel) -> Vec<SceneWarning> {
+    let finder = Finder::new(text);
+    let warning = |under: &str, finding: Finding| {
+        let path = format!("${under}.{}", finding.path);
+        let (line, column) = finder.find(&path).unzip();
+        SceneWarning { path, line, column, found: finding.words }
+    };
+    let placing = placing::findings(scene, travel).into_iter().map(|finding| warning("", finding));
+    placing.chain(scene.findings().into_iter().map(|finding| warning(".scenario", finding))).collect()
+}
+
 /// Read a scene: its document, and what the engine makes of it.
 pub fn parse_scene(text: &[u8]) -> Result<(SceneDocument, Scene), Vec<SceneError>> {
     if text.len() > MAX_SCENE_BYTES {
@@ -54,6 +83,7 @@ pub fn parse_scene(text: &[u8]) -> Result<(SceneDocument, Scene), Vec<SceneError
 /// What the engine makes of a document that is there already.
 pub fn build_scene(document: &SceneDocument) -> Result<Scene, Vec<SceneError>> {
     let mut errors = check::check(document);
+    let checked = errors.len();
     match Scene::build(spec::spec(document)) {
         Ok(scene) if errors.is_empty() => return Ok(scene),
         Ok(_) => {}
@@ -64,7 +94,7 @@ pub fn build_scene(document: &SceneDocument) -> Result<Scene, Vec<SceneError>> {
                 })
             };
             for error in problems.iter().map(spec::error) {
-                if !said_already(&error.path, &errors) {
+                if !said_already(&error.path, &errors[..checked]) {
                     errors.push(error);
                 }
             }
@@ -126,3 +156,12 @@ impl Display for SceneError {
 }
 
 impl std::error::Error for SceneError {}
+
+impl Display for SceneWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let (Some(line), Some(column)) = (self.line, self.column) {
+            write!(f, "line {line}, column {column}: ")?;
+        }
+        write!(f, "{}: {}", self.path, self.found)
+    }
+}

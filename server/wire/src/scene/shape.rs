@@ -121,15 +121,17 @@ impl<'de> Deserialize<'de> for KeepOutShape {
 }
 
 /// A field that is written has a value: null is none.
-fn written<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+pub(super) fn written<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }
 
-fn due<'de, D: Deserializer<'de>, T>(field: Option<T>, name: &'static str) -> Result<T, D::Error> {
+pub(super) fn due<'de, D: Deserializer<'de>, T>(field: Option<T>, name: &'static str) -> Result<T, D::Error> {
     field.ok_or_else(|| D::Error::missing_field(name))
 }
 
-fn only<'de, D: Deserializer<'de>>(
+pub(super) fn only<'de, D: Deserializer<'de>>(
     present: &[(&'static str, bool)],
     known: &'static [&'static str],
 ) -> Result<(), D::Error> {

@@ -4,10 +4,10 @@ use covr_engine::frames::{Floor, Planar, Point};
 use covr_engine::machine::Travel;
 use covr_engine::scene::{
     KeepOutShape as EngineKeepOut, KeepOutSpec, ObjectSpec, PropSpec, ScenePart, SceneProblem, SceneSpec,
-    Shape,
+    Shape, ZoneSpec,
 };
 
-use super::{KeepOutShape, SceneDocument, SceneError, ShapeDocument};
+use super::{KeepOutShape, SceneDocument, SceneError, ShapeDocument, scenario};
 
 /// The engine's description. A prop that does not exist becomes none: the checks of this room name it.
 pub(super) fn spec(document: &SceneDocument) -> SceneSpec {
@@ -43,8 +43,12 @@ pub(super) fn spec(document: &SceneDocument) -> SceneSpec {
             .iter()
             .map(|keep_out| KeepOutSpec { id: keep_out.id.clone(), shape: keep_out_shape(&keep_out.shape) })
             .collect(),
-        zones: Vec::new(),
-        scenario: None,
+        zones: document
+            .zones
+            .iter()
+            .map(|zone| ZoneSpec { id: zone.id.clone(), shape: keep_out_shape(&zone.shape) })
+            .collect(),
+        scenario: document.scenario.as_ref().map(scenario::spec),
     }
 }
 

@@ -11,4 +11,8 @@ id: number,
 /**
  * Its version.
  */
-version: number, };
+version: number, 
+/**
+ * What is worth a second look: what this machine cannot serve well, and its scenario.
+ */
+warnings: import("../generated/SceneWarning").SceneWarning[], };

@@ -36,6 +36,6 @@ request_id: number,
  */
 request: MachineRequest, 
 /**
- * Why; due for a reset.
+ * Why; due for a reset, and to skip or go back in the scenario.
  */
 reason: string | null, };

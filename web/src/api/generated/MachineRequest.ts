@@ -3,4 +3,4 @@
 /**
  * A request to the machine, other than stop.
  */
-export type MachineRequest = "home" | "arm" | "disarm" | "reset" | { "confirm_origin": number } | { "confirm_left": number } | "confirm_clear";
+export type MachineRequest = "home" | "arm" | "disarm" | "reset" | { "confirm_origin": number } | { "confirm_left": number } | "confirm_clear" | { "cue": string } | { "skip_to": string } | "rewind";

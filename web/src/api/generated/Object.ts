@@ -21,6 +21,10 @@ probability: number,
  */
 prior: number, 
 /**
+ * It can be served now.
+ */
+enabled: boolean, 
+/**
  * Where the column's centre must stand.
  */
 column_place_m: [number, number], 

@@ -253,7 +253,31 @@ keep_out: string,
 /**
  * Distance needed, m.
  */
-required_m: number, } | { "id": "scene_activated" } | { "id": "busy" } | { "id": "control_not_running" } | { "id": "drive_silent", 
+required_m: number, } | { "id": "scene_activated" } | { "id": "no_scenario" } | { "id": "scenario_stands" } | { "id": "no_such_cue", 
+/**
+ * As asked.
+ */
+cue: string, 
+/**
+ * Those that there are.
+ */
+known: Array<string>, } | { "id": "not_awaited", 
+/**
+ * The cue or the client event.
+ */
+name: string, 
+/**
+ * The state's id.
+ */
+state: string, } | { "id": "no_such_state", 
+/**
+ * As asked.
+ */
+state: string, } | { "id": "nothing_before" } | { "id": "now_in_state", 
+/**
+ * The state's id.
+ */
+state: string, } | { "id": "skip_needs_reason" } | { "id": "busy" } | { "id": "control_not_running" } | { "id": "drive_silent", 
 /**
  * In this time, ms.
  */

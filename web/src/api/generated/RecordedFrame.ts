@@ -3,6 +3,7 @@ import type { Mode } from "./Mode";
 import type { RecordedColumn } from "./RecordedColumn";
 import type { RecordedObject } from "./RecordedObject";
 import type { RecordedPerson } from "./RecordedPerson";
+import type { RecordedScenario } from "./RecordedScenario";
 
 /**
  * The published state at one moment of a session, room frame.
@@ -27,4 +28,8 @@ persons: Array<RecordedPerson>,
 /**
  * Every object of the scene then in force, in its order.
  */
-objects: Array<RecordedObject>, };
+objects: Array<RecordedObject>, 
+/**
+ * The scenario; null where the scene had none.
+ */
+scenario: RecordedScenario | null, };

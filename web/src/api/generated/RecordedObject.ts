@@ -19,4 +19,8 @@ probability: number,
 /**
  * The prior in force.
  */
-prior: number, };
+prior: number, 
+/**
+ * It could be served.
+ */
+enabled: boolean, };

@@ -4,13 +4,15 @@ import type { ColumnDocument } from "./ColumnDocument";
 import type { KeepOutDocument } from "./KeepOutDocument";
 import type { ObjectDocument } from "./ObjectDocument";
 import type { PropDocument } from "./PropDocument";
+import type { ScenarioDocument } from "./ScenarioDocument";
+import type { ZoneDocument } from "./ZoneDocument";
 
 /**
  * A scene: objects of interest, props on the column, keep-out shapes.
  */
 export type SceneDocument = { 
 /**
- * `covr.scene.v1`.
+ * `covr.scene.v2`; `covr.scene.v1` is read too, and written as the newer.
  */
 schema: string, 
 /**
@@ -40,4 +42,12 @@ objects: Array<ObjectDocument>,
 /**
  * Where the column must never go: furniture, bystanders.
  */
-keep_outs?: Array<KeepOutDocument>, };
+keep_outs?: Array<KeepOutDocument>, 
+/**
+ * Places on the floor that the scenario knows people to be in.
+ */
+zones?: Array<ZoneDocument>, 
+/**
+ * What can be served when, and what leads on; none: every enabled object, always.
+ */
+scenario?: ScenarioDocument | null, };

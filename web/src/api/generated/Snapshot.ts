@@ -8,6 +8,7 @@ import type { Object } from "./Object";
 import type { Person } from "./Person";
 import type { RequestState } from "./RequestState";
 import type { RuleState } from "./RuleState";
+import type { Scenario } from "./Scenario";
 import type { StopCause } from "./StopCause";
 
 /**
@@ -54,6 +55,10 @@ persons: Array<Person>,
  * Every object of the active scene, in its order.
  */
 objects: Array<Object>, 
+/**
+ * The scenario; null where the active scene has none.
+ */
+scenario: Scenario | null, 
 /**
  * The intention rule in use.
  */

@@ -3,11 +3,13 @@ import type { ActiveScene } from "./ActiveScene";
 import type { ClientError } from "./ClientError";
 import type { ClockPong } from "./ClockPong";
 import type { ColumnNow } from "./ColumnNow";
+import type { EventAnswered } from "./EventAnswered";
 import type { Prediction } from "./Prediction";
+import type { ScenarioNow } from "./ScenarioNow";
 import type { StopState } from "./StopState";
 import type { Welcome } from "./Welcome";
 
 /**
  * What the server says to a client.
  */
-export type ToClient = { "type": "welcome" } & Welcome | { "type": "scene" } & ActiveScene | { "type": "column" } & ColumnNow | { "type": "prediction" } & Prediction | { "type": "stop" } & StopState | { "type": "clock_pong" } & ClockPong | { "type": "error" } & ClientError;
+export type ToClient = { "type": "welcome" } & Welcome | { "type": "scene" } & ActiveScene | { "type": "column" } & ColumnNow | { "type": "prediction" } & Prediction | { "type": "stop" } & StopState | { "type": "scenario" } & ScenarioNow | { "type": "event_answered" } & EventAnswered | { "type": "clock_pong" } & ClockPong | { "type": "error" } & ClientError;

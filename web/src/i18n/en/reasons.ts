@@ -167,6 +167,15 @@ export const reasons: ReasonSentences = {
   column_in_keep_out: ({ keep_out, required_m }, { number }) =>
     `the column stands within ${number(required_m, 2)} m of the keep-out shape ${keep_out}: move it away first`,
   scene_activated: () => "the scene is active",
+  no_scenario: () => "the active scene has no scenario",
+  scenario_stands: () => "the scenario stands: it runs while the machine follows people",
+  no_such_cue: ({ cue, known }) =>
+    known.length === 0 ? `there is no cue ${cue}: this scenario has none` : `there is no cue ${cue} in this scenario; it knows ${known.join(", ")}`,
+  not_awaited: ({ name, state }) => `nothing waits for ${name} in the state ${state} now`,
+  no_such_state: ({ state }) => `there is no state ${state} in this scenario`,
+  nothing_before: () => "this is the first state of the run: there is nothing to go back to",
+  now_in_state: ({ state }) => `the scenario is in the state ${state}`,
+  skip_needs_reason: () => "to skip or to go back needs a reason",
   busy: () => "busy: the control loop's queue is full; try again",
   control_not_running: () => "the control loop is not running",
   drive_silent: ({ within_millis }) => `no acknowledgement from the drive within ${within_millis} ms; use the wired stop`,

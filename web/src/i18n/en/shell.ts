@@ -1,6 +1,6 @@
 /** Words of the area `shell`: what stands on every view. */
 export const shell = {
-  pages: { label: "Views", live: "Live", scenes: "Scenes", sessions: "Sessions", machine: "Machine", settings: "Settings", help: "Help" },
+  pages: { label: "Views", live: "Live", scenario: "Scenario", scenes: "Scenes", sessions: "Sessions", machine: "Machine", settings: "Settings", help: "Help" },
   author: { label: "you are", title: "Your name", means: "Your name, as the records of priors and scenes name you" },
   access: {
     signInWith: "This server asks who you are. Your token:",

@@ -167,6 +167,15 @@ export const reasons: ReasonSentences = {
   column_in_keep_out: ({ keep_out, required_m }, { number }) =>
     `la colonne est à moins de ${number(required_m, 2)} m de la zone interdite ${keep_out} : éloignez-la d’abord`,
   scene_activated: () => "la scène est active",
+  no_scenario: () => "la scène active n’a pas de scénario",
+  scenario_stands: () => "le scénario est arrêté : il se déroule quand la machine suit les personnes",
+  no_such_cue: ({ cue, known }) =>
+    known.length === 0 ? `il n’y a pas de signal ${cue} : ce scénario n’en a aucun` : `il n’y a pas de signal ${cue} dans ce scénario ; il connaît ${known.join(", ")}`,
+  not_awaited: ({ name, state }) => `rien n’attend ${name} dans l’état ${state} maintenant`,
+  no_such_state: ({ state }) => `il n’y a pas d’état ${state} dans ce scénario`,
+  nothing_before: () => "c’est le premier état de la partie : il n’y a rien où revenir",
+  now_in_state: ({ state }) => `le scénario est dans l’état ${state}`,
+  skip_needs_reason: () => "sauter ou revenir demande une raison",
   busy: () => "occupé : la file de la boucle de commande est pleine ; réessayez",
   control_not_running: () => "la boucle de commande ne tourne pas",
   drive_silent: ({ within_millis }) => `aucun accusé de réception du variateur en ${within_millis} ms ; utilisez l’arrêt câblé`,

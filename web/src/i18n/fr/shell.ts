@@ -1,6 +1,6 @@
 /** Words of the area `shell`: what stands on every view. */
 export const shell = {
-  pages: { label: "Vues", live: "En direct", scenes: "Scènes", sessions: "Séances", machine: "Machine", settings: "Réglages", help: "Aide" },
+  pages: { label: "Vues", live: "En direct", scenario: "Scénario", scenes: "Scènes", sessions: "Séances", machine: "Machine", settings: "Réglages", help: "Aide" },
   author: { label: "vous êtes", title: "Votre nom", means: "Votre nom, tel qu’il figure dans l’historique des a priori et des scènes" },
   access: {
     signInWith: "Ce serveur demande qui vous êtes. Votre jeton :",

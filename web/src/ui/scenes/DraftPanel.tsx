@@ -4,7 +4,7 @@ import { words } from "../../i18n";
 import type { SceneSummary } from "../../api/types";
 import { drawable, nameIn, placeErrors, type PlacedError } from "../../lib/sceneText";
 import type { Live } from "../../live/live";
-import type { Draft, Upload } from "../../views/upload";
+import type { Check, Draft, Upload } from "../../views/upload";
 import { Arena } from "../Arena";
 import { SceneEditor } from "./SceneEditor";
 
@@ -37,7 +37,7 @@ export function DraftPanel(props: {
     return props.draft.of ?? props.scenes.find((scene) => scene.name === name)?.id ?? null;
   });
   const target = (): string => chosen() ?? (guess() === null ? "new" : String(guess()));
-  const passed = (): { name: string; objects: number } | null => (props.draft.check.kind === "passed" ? props.draft.check : null);
+  const passed = (): Extract<Check, { kind: "passed" }> | null => (props.draft.check.kind === "passed" ? props.draft.check : null);
   const preview = createMemo(() => (passed() === null ? null : drawable(props.draft.text)));
 
   const says = (): string => {
@@ -104,6 +104,21 @@ export function DraftPanel(props: {
                 )}
               </For>
             </ol>
+          </Show>
+          <Show when={passed()?.warnings.length}>
+            <h3 id="draft-warnings">{words().records.draft.warnings}</h3>
+            <ul class="draft-warnings" aria-labelledby="draft-warnings" data-testid="scene-warnings">
+              <For each={passed()?.warnings ?? []}>
+                {(warning) => (
+                  <li>
+                    <span class="error-place">
+                      {warning.line === null ? words().records.draft.noPlace : words().records.draft.at(warning.line, warning.column ?? 1)}
+                    </span>{" "}
+                    <code>{warning.path}</code> <span lang="en">{warning.found}</span>
+                  </li>
+                )}
+              </For>
+            </ul>
           </Show>
           <Show when={preview()}>
             {(scene) => (

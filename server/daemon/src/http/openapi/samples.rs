@@ -10,6 +10,7 @@ use covr_wire::client::Convention;
 use covr_wire::commissioning::{BrakeRun, Commissioning, CommissioningStep, NewCommissioning};
 use covr_wire::examples;
 use covr_wire::records::{RecordedFrame, SceneInForce, Session, SessionDetail};
+use covr_wire::scene::SceneWarning;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -63,8 +64,16 @@ pub fn of(schema: &str) -> Option<Value> {
         }),
         "Calibration" => value(calibration()),
         "CalibrationSummary" => value(calibration().summary),
-        "SceneStored" => value(SceneStored { id: 4, version: 1 }),
-        "SceneChecked" => value(SceneChecked { valid: true, name: "Kitchen".into(), objects: 12 }),
+        "SceneStored" => value(SceneStored { id: 4, version: 1, warnings: vec![scene_warning()] }),
+        "SceneChecked" => value(SceneChecked {
+            valid: true,
+            name: "Kitchen".into(),
+            objects: 12,
+            warnings: vec![scene_warning()],
+        }),
+        "SceneWarning" => value(scene_warning()),
+        "CueBody" => Some(json!({ "name": "lights on" })),
+        "SkipBody" => Some(json!({ "to": "walls", "reason": "the carpet was missed" })),
         "SceneActivated" => value(SceneActivated { id: 4, version: 2, detail: "the scene is active".into() }),
         "PriorChange" => value(PriorChange {
             at: AT.into(),
@@ -190,6 +199,15 @@ pub fn problem_item() -> ProblemItem {
         expected: "a number from 0 to 1".into(),
         line: Some(5),
         column: Some(17),
+    }
+}
+
+fn scene_warning() -> SceneWarning {
+    SceneWarning {
+        path: "$.scenario.states[2]".into(),
+        line: Some(31),
+        column: Some(7),
+        found: "nothing leads on from the state \"walls\", and it is not marked as final".into(),
     }
 }
 

@@ -8,18 +8,19 @@ use std::collections::{BTreeMap, VecDeque};
 use std::net::IpAddr;
 use std::sync::Arc;
 
+use covr_engine::Request;
 use covr_engine::observation::{Observation, PersonId, PoseSample};
 use covr_engine::time::{Span, Time};
 use covr_wire::client::{
-    AbuseGauge, ClientError, ClientHello, Encoding, ErrorCode, FromClient, HeadPose, Sequencer, ToClient,
-    Touch, Verdict, Welcome, decode,
+    AbuseGauge, ClientError, ClientHello, Encoding, ErrorCode, EventAnswered, FromClient, HeadPose,
+    Sequencer, ToClient, Touch, Verdict, Welcome, decode,
 };
 use covr_wire::clock::ClientClock;
 use covr_wire::convention::ClientFrame;
 use covr_wire::dashboard::Client;
 use covr_wire::link::{Link, LinkFigures};
 use serde_json::json;
-use tokio::sync::{OwnedSemaphorePermit, watch};
+use tokio::sync::{OwnedSemaphorePermit, mpsc, watch};
 
 use crate::access::table::client_key;
 use crate::access::{Caller, Holder, Standing};
@@ -69,6 +70,8 @@ pub struct Guest {
     app: Arc<App>,
     encoding: Encoding,
     who: Newcomer,
+    /// For answers that come later.
+    replies: mpsc::Sender<Reply>,
     gauge: AbuseGauge,
     clock: ClientClock,
     greeted: Option<Greeted>,
@@ -97,13 +100,14 @@ struct Present {
 
 impl Guest {
     /// A client that has said nothing yet.
-    pub fn new(app: Arc<App>, encoding: Encoding, who: Newcomer) -> Self {
+    pub fn new(app: Arc<App>, encoding: Encoding, who: Newcomer, replies: mpsc::Sender<Reply>) -> Self {
         let gauge = AbuseGauge::new(app.config.clients.persons_each);
         let rooms = app.calibrations.watch();
         Self {
             app,
             encoding,
             who,
+            replies,
             gauge,
             clock: ClientClock::new(),
             greeted: None,
@@ -214,9 +218,28 @@ impl Guest {
             FromClient::SceneEvent(event) => {
                 let summary = format!("scene event {}", event.name);
                 self.record("scene_event", summary, json!({ "name": event.name, "detail": event.detail }));
+                self.client_event(event.name)?;
             }
         }
         Ok(None)
+    }
+
+    /// Tell the scenario, where there is one. The answer comes after the next control step; poses do not wait for it.
+    fn client_event(&self, name: String) -> Result<(), ClientError> {
+        if self.app.stage.active().scene.scenario().is_none() {
+            return Ok(());
+        }
+        let answer = self.app.control.put(Request::ClientEvent(name.clone())).map_err(busy)?;
+        let (app, replies) = (self.app.clone(), self.replies.clone());
+        tokio::spawn(async move {
+            // Without a control thread the connection is about to end.
+            let Ok(answer) = answer.await else { return };
+            let detail = app.reason(&answer).to_string();
+            let answered = EventAnswered { name, outcome: answer.outcome.into(), detail };
+            // Whoever does not read is let go of by the reader.
+            let _ = replies.try_send(Reply::Say(ToClient::EventAnswered(answered)));
+        });
+        Ok(())
     }
 
     fn pose(&mut self, pose: &HeadPose, received: Time) -> Result<(), ClientError> {
@@ -275,7 +298,12 @@ impl Guest {
             detail["column_speed_mps"] = column.map(|column| column.speed_mps).into();
         }
         self.record(kind, format!("{} {verb} {}", touch.person, touch.object), detail);
-        Ok(())
+        let object = touch.object.as_str().into();
+        self.tell(if kind == "touch_began" {
+            Observation::TouchBegan(id, object)
+        } else {
+            Observation::TouchEnded(id, object)
+        })
     }
 
     fn refuse(&mut self, error: ClientError, received: Time) -> Reply {
