@@ -1,5 +1,5 @@
 /** The page: stop, mode and banners on every view; which view by the address's hash. */
-import { createEffect, createSignal, Match, Show, Switch, type JSX } from "solid-js";
+import { createEffect, createSignal, Match, Show, Suspense, Switch, type JSX } from "solid-js";
 import { words } from "../i18n";
 import { createAppearance } from "../lib/appearance";
 import { readAuthor, writeAuthor } from "../lib/author";
@@ -15,14 +15,9 @@ import { StopReport } from "../ui/StopReport";
 import { SignIn } from "../ui/SignIn";
 import { Strip } from "../ui/Strip";
 import { Tour } from "../ui/Tour";
-import { HelpView } from "./HelpView";
 import { LiveView } from "./LiveView";
+import { fetchLater, HelpView, MachineView, ScenarioView, ScenesView, SessionsView, SettingsView } from "./later";
 import { createRoute } from "./route";
-import { ScenarioView } from "./ScenarioView";
-import { ScenesView } from "./ScenesView";
-import { SessionsView } from "./SessionsView";
-import { MachineView } from "./MachineView";
-import { SettingsView } from "./SettingsView";
 import { createUpload } from "./upload";
 
 /** The whole dashboard. */
@@ -59,6 +54,10 @@ export function App(): JSX.Element {
   };
   const usesShortcuts = (): boolean => store.preferences().shortcuts !== false;
   listenForShortcuts(usesShortcuts, () => (listed() ? KEYS_OF_THE_LIST : null));
+  // The other views come when the live one is there: then they are here when the server is not.
+  createEffect(() => {
+    if (live.freshness().kind === "live") fetchLater();
+  });
   createEffect(() => {
     document.title = `${words().shell.pages[route().view]} · CoVR`;
   });
@@ -83,35 +82,37 @@ export function App(): JSX.Element {
         </p>
       </div>
       <main inert={listed()}>
-        <Switch>
-          <Match when={route().view === "live"}>
-            <LiveView live={live} author={author()} preferences={store} />
-          </Match>
-          <Match when={route().view === "scenario"}>
-            <ScenarioView live={live} />
-          </Match>
-          <Match when={route().view === "scenes"}>
-            <ScenesView live={live} upload={upload} author={author()} />
-          </Match>
-          <Match when={route().view === "sessions"}>
-            <SessionsView live={live} />
-          </Match>
-          <Match when={route().view === "machine"}>
-            <MachineView live={live} author={author()} />
-          </Match>
-          <Match when={route().view === "settings"}>
-            <SettingsView
-              live={live}
-              author={author()}
-              setAuthor={keepAuthor}
-              preferences={store}
-              showShortcuts={() => setListed(true)}
-            />
-          </Match>
-          <Match when={route().view === "help"}>
-            <HelpView live={live} at={route().rest} showTour={showTour} showShortcuts={() => setListed(true)} />
-          </Match>
-        </Switch>
+        <Suspense fallback={<p class="empty">{words().shell.viewComes}</p>}>
+          <Switch>
+            <Match when={route().view === "live"}>
+              <LiveView live={live} author={author()} preferences={store} />
+            </Match>
+            <Match when={route().view === "scenario"}>
+              <ScenarioView live={live} />
+            </Match>
+            <Match when={route().view === "scenes"}>
+              <ScenesView live={live} upload={upload} author={author()} />
+            </Match>
+            <Match when={route().view === "sessions"}>
+              <SessionsView live={live} />
+            </Match>
+            <Match when={route().view === "machine"}>
+              <MachineView live={live} author={author()} />
+            </Match>
+            <Match when={route().view === "settings"}>
+              <SettingsView
+                live={live}
+                author={author()}
+                setAuthor={keepAuthor}
+                preferences={store}
+                showShortcuts={() => setListed(true)}
+              />
+            </Match>
+            <Match when={route().view === "help"}>
+              <HelpView live={live} at={route().rest} showTour={showTour} showShortcuts={() => setListed(true)} />
+            </Match>
+          </Switch>
+        </Suspense>
       </main>
       <Strip live={live} />
       <Show when={listed()}>

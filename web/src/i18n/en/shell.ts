@@ -19,6 +19,7 @@ export const shell = {
   theme: { label: "Theme", dark: "Dark", light: "Light", system: "As the system", change: "Theme: switch between dark and light" },
   language: { label: "Language", change: "Language: English or French" },
   shortcutsButton: "Keyboard shortcuts",
+  viewComes: "This view is being fetched.",
   dropHint: "Drop the scene’s JSON file to upload it",
   modes: {
     disarmed: "Disarmed",

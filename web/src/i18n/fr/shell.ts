@@ -19,6 +19,7 @@ export const shell = {
   theme: { label: "Thème", dark: "Sombre", light: "Clair", system: "Comme le système", change: "Thème : passer du sombre au clair" },
   language: { label: "Langue", change: "Langue : anglais ou français" },
   shortcutsButton: "Raccourcis clavier",
+  viewComes: "Cette vue arrive.",
   dropHint: "Déposez le fichier JSON de la scène pour l’envoyer",
   modes: {
     disarmed: "Désarmée",
