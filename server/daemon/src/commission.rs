@@ -74,10 +74,11 @@ pub async fn run(options: &Commission) -> anyhow::Result<()> {
 
 async fn wired_stop(desk: &mut Desk) -> anyhow::Result<()> {
     confirm(
-        "Press the wired emergency stop. Have the motors lost their power, so that the column can be pushed? Then release it.",
+        "Press the wired emergency stop. Have the motors lost their power, so that the column can be pushed? Then release it; \
+         a board that latches it wants its own power off and on.",
     )
     .await?;
-    reset_if_stopped(desk).await
+    reset_if_stopped(desk, LONGEST_MENDING).await
 }
 
 async fn link(desk: &mut Desk) -> anyhow::Result<()> {
@@ -107,7 +108,7 @@ async fn link(desk: &mut Desk) -> anyhow::Result<()> {
 }
 
 async fn home(desk: &mut Desk) -> anyhow::Result<()> {
-    reset_if_stopped(desk).await?;
+    reset_if_stopped(desk, LONGEST_STOP).await?;
     if desk.state().await?.mode != Mode::Ready {
         desk.post("home", None).await?;
     }
@@ -161,7 +162,7 @@ async fn stop_lanes(desk: &mut Desk) -> anyhow::Result<()> {
             say("   By the dashboard's socket: acknowledged.")?;
         }
         desk.wait("at rest", LONGEST_STOP, |snapshot| speed(snapshot) < AT_REST_MPS).await?;
-        reset_if_stopped(desk).await?;
+        reset_if_stopped(desk, LONGEST_STOP).await?;
     }
     Ok(())
 }
@@ -227,18 +228,18 @@ async fn one_run(
     desk.jog(JogAim::Along(along), speed_mps, LONGEST_CREEP, at_speed).await.context("up to speed")?;
     desk.stop_by_http().await?;
     let event = desk.event("came_to_rest", LONGEST_STOP).await?;
-    reset_if_stopped(desk).await?;
+    reset_if_stopped(desk, LONGEST_STOP).await?;
     Ok(serde_json::from_value(event.detail)?)
 }
 
 /// Leave a stop that this program made, or the wired stop.
-async fn reset_if_stopped(desk: &mut Desk) -> anyhow::Result<()> {
+async fn reset_if_stopped(desk: &mut Desk, patience: Duration) -> anyhow::Result<()> {
     let stopped = |snapshot: &Snapshot| matches!(snapshot.mode, Mode::LatchedStop | Mode::Faulted);
     if stopped(&desk.state().await?) {
         let may_reset = |snapshot: &Snapshot| {
             snapshot.requests.iter().any(|state| state.request == "reset" && state.refused_because.is_none())
         };
-        desk.wait("the cause of the stop is gone", LONGEST_STOP, may_reset).await?;
+        desk.wait("the cause of the stop is gone", patience, may_reset).await?;
         desk.post("reset", Some(json!({ "reason": "commissioning" }))).await?;
         desk.wait("reset", LONGEST_STOP, |snapshot| !stopped(snapshot)).await?;
     }
@@ -322,3 +323,5 @@ const LONGEST_LINK: Duration = Duration::from_secs(60);
 const LONGEST_HOMING: Duration = Duration::from_secs(180);
 const LONGEST_CREEP: Duration = Duration::from_secs(120);
 const LONGEST_STOP: Duration = Duration::from_secs(20);
+/// Somebody walks to the board and back.
+const LONGEST_MENDING: Duration = Duration::from_secs(300);
