@@ -128,11 +128,7 @@ impl App {
         if kind == RequestKind::Arm
             && let Some(why) = self.why_not_armed()
         {
-            let summary = format!("{name} by {asker}: refused: {why}");
-            let mut detail = asker.sign(detail);
-            detail["detail"] = why.to_string().into();
-            detail["why"] = json!(why);
-            self.recorder.record("request_refused", summary, detail);
+            self.record_asked(asker, name, Outcome::Refused, &why, detail);
             return Err(NotDelivered::NotAsked(Box::new(why)));
         }
         self.ask_recorded(asker, name, Request::Machine(kind, reason), detail).await
@@ -281,10 +277,15 @@ impl App {
         Ok(answer)
     }
 
-    fn record_answer(&self, asker: &Asker, name: &str, answer: &Answer, mut detail: Value) {
-        let why = self.reason(answer);
-        let kind = if answer.outcome == Outcome::Refused { "request_refused" } else { "request_accepted" };
-        let outcome = if answer.outcome == Outcome::Refused { "refused" } else { "accepted" };
+    fn record_answer(&self, asker: &Asker, name: &str, answer: &Answer, detail: Value) {
+        self.record_asked(asker, name, answer.outcome, &self.reason(answer), detail);
+    }
+
+    fn record_asked(&self, asker: &Asker, name: &str, outcome: Outcome, why: &Reason, mut detail: Value) {
+        let (kind, outcome) = match outcome {
+            Outcome::Refused => ("request_refused", "refused"),
+            Outcome::Accepted | Outcome::AlreadySo => ("request_accepted", "accepted"),
+        };
         detail["detail"] = why.to_string().into();
         detail["why"] = json!(why);
         self.recorder.record(kind, format!("{name} by {asker}: {outcome}: {why}"), asker.sign(detail));

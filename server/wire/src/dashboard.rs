@@ -110,7 +110,7 @@ pub enum MachineRequest {
     ConfirmOrigin(u32),
     /// The person with this id, whose headset is lost, has left the arena (R10).
     ConfirmLeft(u32),
-    /// Somebody looked: nobody is in the arena (R16). The word holds until the next stop or disarming.
+    /// Somebody looked: nobody is in the arena (R16). The word holds until somebody has been there, the next stop or disarming.
     ConfirmClear,
     /// Give this cue to the scenario.
     Cue(String),

@@ -142,7 +142,7 @@ async fn left(
     answered(&app, &app.confirm_left(&asker, person).await?)
 }
 
-/// Somebody looked: nobody is in the arena (R16). The word holds until the next stop or disarming.
+/// Somebody looked: nobody is in the arena (R16). The word holds until somebody has been there, the next stop or disarming.
 #[utoipa::path(post, path = "/arena/clear", tag = "machine",
     responses((status = 200, body = Answered), (status = 409, description = "Refused: somebody is in the arena", body = Problem),
         (status = 503, description = "Busy", body = Problem)))]

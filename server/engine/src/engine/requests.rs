@@ -27,7 +27,7 @@ pub enum Request {
     ConfirmOrigin(PersonId),
     /// A person whose headset is lost has left the arena: somebody saw it.
     ConfirmLeft(PersonId),
-    /// Somebody looked: nobody is in the arena (R16). The word holds until the next stop or disarming.
+    /// Somebody looked: nobody is in the arena (R16). The word holds until somebody has been there, the next stop or disarming.
     ConfirmClear,
     /// New priors by object index, each 0 to 1.
     SetPriors(Vec<(usize, f64)>),
@@ -92,7 +92,6 @@ impl Engine {
         match mode::respond(self.mode, kind, &self.conditions(now)) {
             Response::AlreadySo(reason) => Answer { outcome: Outcome::AlreadySo, reason },
             Response::Refuse(reason) => refused(reason),
-            Response::Go(_) if kind == RequestKind::Jog => refused(self.no_jog_order()),
             Response::Go(Mode::Homing) if let Some(reason) = self.shape_on_the_way_home() => refused(reason),
             Response::Go(to) => {
                 match kind {
@@ -103,7 +102,9 @@ impl Engine {
                         self.arena_confirmed_clear = self.persons.is_empty();
                         self.enter(to, None, Reason::Asked(kind), now);
                     }
-                    RequestKind::Disarm | RequestKind::Jog => self.enter(to, None, Reason::Asked(kind), now),
+                    RequestKind::Disarm => self.enter(to, None, Reason::Asked(kind), now),
+                    // Without a way or a place it is no order.
+                    RequestKind::Jog => return refused(self.no_jog_order()),
                     RequestKind::Reset => {
                         self.supervisor.software_stop(None, now, &mut self.pending);
                         self.enter(to, None, Reason::ResetAsked(reason), now);
@@ -187,6 +188,8 @@ impl Engine {
         self.persons.retain(|p| p.id() != id);
         if self.persons.len() < before {
             self.pending.push(EventKind::PersonLeft(id));
+            // Whoever said that nobody is there looked before this person came; a headset that is off is no look.
+            self.arena_confirmed_clear = false;
             self.leave_the_play(id);
         }
     }

@@ -88,6 +88,10 @@ fn a_jog_is_slower_among_people_and_creeps_where_nobody_vouches_for_the_arena() 
     assert!(fastest <= 0.24 + 1e-9 && fastest > 0.23, "among people: {fastest} m/s");
     room.engine.observe(room.now, Observation::PersonLeft(VISITOR));
     room.head = None;
+    let speed = |room: &Room| room.engine.snapshot(room.now).column.jog_speed_mps;
+    assert_eq!(speed(&room), Some(0.1), "who said that the arena is clear looked before the visitor came");
+    assert_eq!(room.engine.request(room.now, Request::ConfirmClear).outcome, Outcome::Accepted);
+    assert_eq!(speed(&room), Some(1.1));
     room.ask(RequestKind::Disarm);
     room.run(0.5);
     assert_eq!(room.jog(ALONG_X).reason, Reason::JogNotYet);
