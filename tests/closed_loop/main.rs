@@ -5,7 +5,7 @@
 mod played;
 mod served;
 
-use covr_study::prove::{Campaign, Case, prove, run};
+use covr_study::prove::{Campaign, Case, Part, prove, run};
 
 /// A quarter of the million steps.
 fn quarter(seed: u64) {
@@ -36,6 +36,15 @@ fn no_violation_in_a_million_steps_third_quarter() {
 #[test]
 fn no_violation_in_a_million_steps_fourth_quarter() {
     quarter(4_000);
+}
+
+/// Found by campaigns, as they were shrunk: each ended with a violation once.
+#[test]
+fn what_campaigns_found_stays_mended() {
+    // Somebody appears beside a column that speeds up in the moment in which the link to it dies.
+    let link_dies = Case { seed: 70_205, steps: 8_363, v_h_mps: None, without: vec![Part::Person(0)] };
+    let proof = run(&link_dies, u64::MAX).unwrap();
+    assert_eq!(proof.violations(), 0, "{link_dies}: {:?}", proof.truth.first);
 }
 
 #[test]

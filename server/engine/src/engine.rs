@@ -260,8 +260,9 @@ impl Engine {
                     self.following.rest_at(governor.commanded().position());
                     self.supervisor.separation_idle(now, &mut self.pending);
                 }
+                let valid_for = self.parameters.setpoint_valid(&config.limits, config.period);
                 self.record(now);
-                return governor_command(self.governor.as_ref(), now, self.parameters.reaction);
+                return governor_command(self.governor.as_ref(), now, valid_for);
             }
         };
         self.governor = None;
@@ -303,13 +304,14 @@ impl Engine {
         &self.config
     }
 
-    /// A step that comes late finds the machine farther on. A machine that went on by itself for longer than a reaction,
-    /// or is not where it should be, is let come to rest and taken over anew.
+    /// A step that comes late finds the machine farther on. A machine that brakes already, its last setpoint being too old, or
+    /// is not where it should be, is let come to rest and taken over anew.
     fn keep_up_with_the_machine(&mut self, now: Time) {
         let Self { config: EngineConfig { period, limits, .. }, parameters, .. } = self;
         let unwatched = self.stepped_at.map_or(Span::ZERO, |before| now - (before + *period));
         let silent = self.report.map_or(Span::ZERO, |report| now - report.answered_at);
-        if unwatched.max(silent) > parameters.reaction || self.supervisor.is_astray() {
+        let valid_for = parameters.setpoint_valid(limits, *period);
+        if unwatched > valid_for || silent > parameters.reaction || self.supervisor.is_astray() {
             self.governor = None;
         } else if let Some(governor) =
             self.governor.as_mut().filter(|_| unwatched.secs() > 0.5 * period.secs())

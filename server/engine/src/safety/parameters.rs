@@ -1,5 +1,6 @@
 //! The numbers of the safety rules, in one place, each with the rule that it belongs to.
 
+use crate::machine::Limits;
 use crate::time::Span;
 
 /// The parameters of R1 to R16. Defaults are those of the safety design.
@@ -114,5 +115,47 @@ impl Parameters {
             reduced_speed_mps: 0.24,
             hold_to_run: Span::from_millis(300),
         }
+    }
+
+    /// R3: how long a machine goes on by one setpoint, from when it was vetted. When the link dies in the moment in which
+    /// somebody appears, the speed still rises for a period that nobody commands, for this long, and until the acceleration is
+    /// ramped out; together one reaction. A machine that ramps slowly has five periods all the same, which a busy link needs.
+    pub fn setpoint_valid(&self, limits: &Limits, period: Span) -> Span {
+        let ramp_secs = [limits.x, limits.y].map(|axis| axis.acceleration_mps2 / axis.jerk_mps3);
+        let ramp = Span::from_secs(ramp_secs[0].max(ramp_secs[1]));
+        let five_periods = Span::from_micros(5 * period.micros());
+        (self.reaction - ramp - period).max(five_periods).min(self.reaction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::AxisLimits;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// What nobody commands any more speeds up for one reaction at most, wherever the ramp leaves room for that.
+        #[test]
+        fn a_machine_that_hears_no_more_speeds_up_for_a_reaction_at_most(
+            (ax, ay) in (0.1..3.0f64, 0.1..3.0f64),
+            (jx, jy) in (5.0..500.0f64, 5.0..500.0f64),
+            period_millis in 1..20i64,
+        ) {
+            let axis = |acceleration_mps2, jerk_mps3| AxisLimits { acceleration_mps2, jerk_mps3, ..AxisLimits::PAPER };
+            let limits = Limits { x: axis(ax, jx), y: axis(ay, jy) };
+            let (parameters, period) = (Parameters::new(1.6), Span::from_millis(period_millis));
+            let valid = parameters.setpoint_valid(&limits, period);
+            prop_assert!(valid >= period && valid <= parameters.reaction);
+            let speeds_up_secs = (period + valid).secs() + (ax / jx).max(ay / jy);
+            let busy = valid == Span::from_millis(5 * period_millis) || valid == parameters.reaction;
+            prop_assert!(busy || speeds_up_secs <= parameters.reaction.secs() + 1e-6, "{} s", speeds_up_secs);
+        }
+    }
+
+    #[test]
+    fn by_the_papers_limits_a_setpoint_is_good_for_30_ms() {
+        let valid = Parameters::new(1.6).setpoint_valid(&Limits::PAPER, Span::from_millis(4));
+        assert_eq!(valid.micros() / 1_000, 30);
     }
 }
