@@ -208,15 +208,26 @@ async fn every_message_of_a_vr_client_is_taken_from_the_roles_of_the_table_and_n
     }
 }
 
+/// Something of this schema.
+fn example_of(schema: &Value) -> Value {
+    match schema["type"].as_str() {
+        Some("string") => json!("x"),
+        Some("object") => {
+            let fields = schema["properties"].as_object().unwrap();
+            fields.iter().map(|(name, of)| (name.clone(), example_of(of))).collect()
+        }
+        _ => json!(3),
+    }
+}
+
 /// Every request that the contract has, from its schema: a new one is walked without anybody's doing.
 fn types_of_requests() -> Vec<MachineRequest> {
     let schema = schemars::schema_for!(MachineRequest).to_value();
     let variants = schema["oneOf"].as_array().unwrap().clone();
     let values = variants.iter().flat_map(|variant| match variant["properties"].as_object() {
-        Some(fields) => fields
-            .iter()
-            .map(|(name, about)| json!({ name: if about["type"] == "string" { json!("x") } else { json!(3) } }))
-            .collect::<Vec<_>>(),
+        Some(fields) => {
+            fields.iter().map(|(name, about)| json!({ name: example_of(about) })).collect::<Vec<_>>()
+        }
         None => match (&variant["const"], &variant["enum"]) {
             (Value::String(name), _) => vec![json!(name)],
             (_, Value::Array(names)) => names.clone(),

@@ -95,7 +95,7 @@ async fn skipping_and_going_back_need_a_reason_and_are_on_record() {
     server.good("POST", "/api/v1/scenario/skip", Some(&skip("walls", "the carpet was missed"))).await;
     let state = server.good("GET", "/api/v1/state", None).await;
     let enabled: Vec<_> = state["objects"].as_array().unwrap().iter().map(|o| o["enabled"].clone()).collect();
-    assert_eq!(enabled, [json!(false), json!(true), json!(true), json!(true)]);
+    assert_eq!(enabled, [json!(false), json!(true), json!(true), json!(true), json!(false)]);
     assert_eq!((&state["objects"][0]["prior"], &state["objects"][2]["prior"]), (&json!(1.0), &json!(0.34)));
 
     let mut dashboard = Dashboard::connect(&server.host).await;
@@ -188,12 +188,40 @@ async fn disarming_ends_the_run_and_the_next_begins_where_a_skip_says() {
 }
 
 #[tokio::test]
+async fn a_contact_is_armed_for_who_is_there_while_the_machine_follows_and_everything_is_on_record() {
+    let server = playing().await;
+    let contact = |person: u32, secs: f64| json!({ "person": person, "secs": secs }).to_string();
+    let problem = server.refused(409, "POST", "/api/v1/contact/arm", Some(&contact(1, 30.0))).await;
+    assert_eq!(problem.why.as_deref(), Some(&Reason::ScenarioStands));
+    server.arm().await;
+    let problem = server.refused(409, "POST", "/api/v1/contact/arm", Some(&contact(1, 0.2))).await;
+    assert_eq!(problem.why.as_deref(), Some(&Reason::ContactSecs { least: 1.0, most: 300.0 }));
+    let problem = server.refused(409, "POST", "/api/v1/contact/arm", Some(&contact(9, 30.0))).await;
+    assert!(matches!(problem.why.as_deref(), Some(Reason::PersonNotInside { .. })), "{problem:?}");
+    server.refused(400, "POST", "/api/v1/contact/arm", Some("{\"person\": 1}")).await;
+    let answer = server.good("POST", "/api/v1/contact/disarm", None).await;
+    assert_eq!(
+        (&answer["outcome"], &answer["detail"]),
+        (&json!("already_so"), &json!("no contact is armed"))
+    );
+    let answer = server.good("POST", "/api/v1/contact/free", None).await;
+    assert_eq!(answer["outcome"], "already_so");
+    let state = server.good("GET", "/api/v1/state", None).await;
+    assert_eq!(
+        (&state["interaction"], &state["contact"], &state["bears"]),
+        (&json!(null), &json!(null), &json!(null))
+    );
+    let events = server.good("GET", "/api/v1/events", None).await.to_string();
+    assert!(events.contains("arm_contact by"), "{events}");
+}
+
+#[tokio::test]
 async fn a_check_tells_what_is_worth_a_second_look() {
     let server = TestServer::start().await;
     let lonely = ESCAPE.replace("\"final\": true", "\"final\": false");
     let checked = server.good("POST", "/api/v1/scenes/check", Some(&lonely)).await;
     let warned = checked["warnings"].as_array().unwrap();
-    let of_scenario = warned.iter().find(|w| w["path"] == "$.scenario.states[4]").unwrap();
+    let of_scenario = warned.iter().find(|w| w["path"] == "$.scenario.states[5]").unwrap();
     assert!(of_scenario["line"].as_u64().unwrap() > 60, "{checked}");
     let bad = ESCAPE.replace("\"initial\": \"dark\"", "\"initial\": \"light\"");
     let problem = server.refused(422, "POST", "/api/v1/scenes/check", Some(&bad)).await;

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use covr_engine::EngineConfig;
 use covr_engine::event::EventKind;
 use covr_engine::frames::{Floor, Planar, Point, Pose};
 use covr_engine::intention::{IntentionParameters, RuleName};
@@ -11,6 +10,7 @@ use covr_engine::observation::{Observation, PersonId, PoseSample};
 use covr_engine::safety::separation::KeptFrom;
 use covr_engine::scene::Scene;
 use covr_engine::time::{Span, Time};
+use covr_engine::{EngineConfig, Outcome, Request};
 use covr_gantry::contract::Gantry;
 use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::MachineParameters;
@@ -118,6 +118,42 @@ impl Play {
         self.control.engine().snapshot(self.control.now()).column.velocity.norm()
     }
 
+    fn arm_contact(&mut self) {
+        let answer = self.control.request(Request::ArmContact(ADA, Span::from_millis(60_000)));
+        assert_eq!(answer.outcome, Outcome::Accepted, "{:?}", answer.reason);
+    }
+
+    fn column(&self) -> Floor {
+        self.control.engine().snapshot(self.control.now()).column.position
+    }
+
+    /// Walks after what she holds, for so long or until the state is left.
+    fn led(&mut self, secs: f64) {
+        let state = self.state();
+        for _ in 0..(secs / PERIOD.secs()).round() as u32 {
+            let hand = self.column() + Planar::new(0.0, -0.35);
+            let behind = hand + Planar::new(0.0, -0.55);
+            self.at += (behind - self.at).capped(0.9 * PERIOD.secs());
+            self.step();
+            if self.state() != state {
+                break;
+            }
+        }
+    }
+
+    /// Goes with the seat, for so long or until the state is left.
+    fn carried(&mut self, secs: f64) {
+        let state = self.state();
+        for _ in 0..(secs / PERIOD.secs()).round() as u32 {
+            let seat = self.column() + Planar::new(-0.45, 0.0);
+            self.at += (seat - self.at).capped(1.2 * PERIOD.secs());
+            self.step();
+            if self.state() != state {
+                break;
+            }
+        }
+    }
+
     fn touch(&mut self, object: &str, began: bool) {
         let object = object.into();
         self.control.observe(if began {
@@ -179,7 +215,23 @@ fn the_papers_first_scene_is_played_from_start_to_end_also_with_a_hand_that_lets
     play.touch("wall_middle", false);
     play.step();
     play.step();
+    assert_eq!(play.state(), "broom");
+
+    // The broom is armed when she is about to take it, and pulls her out; once she lets go on the way.
+    play.look_at("broom");
+    play.walk_to(Floor::new(3.2, 0.4));
+    play.wait_for_column("broom");
+    play.walk_to(Floor::new(2.15, 0.15));
+    play.arm_contact();
+    play.touch("broom", true);
+    play.led(1.5);
+    play.touch("broom", false);
+    play.wait(1.0);
+    assert!(play.speed_mps() < 0.01 && play.state() == "broom");
+    play.touch("broom", true);
+    play.led(10.0);
     assert_eq!(play.state(), "escaped");
+    play.touch("broom", false);
 
     let entered: Vec<String> = play
         .control
@@ -189,11 +241,71 @@ fn the_papers_first_scene_is_played_from_start_to_end_also_with_a_hand_that_lets
             _ => None,
         })
         .collect();
-    assert_eq!(entered, ["dark", "lit", "walls", "pushed", "escaped"]);
+    assert_eq!(entered, ["dark", "lit", "walls", "pushed", "broom", "escaped"]);
     let snapshot = play.control.engine().snapshot(play.control.now());
     let wall = snapshot.scenario.expect("a scenario").variables.into_iter().find(|(id, _)| id == "wall");
     assert_eq!(wall.map(|(_, value)| value.number()), Some(2));
     holds(&play.control);
+}
+
+#[test]
+fn the_papers_second_scene_is_played_from_start_to_end_with_a_ride_and_a_ghost() {
+    let scene =
+        Arc::new(parse_scene(include_bytes!("../../deploy/scenes/clouds.json")).expect("a good scene").1);
+    let control = armed(&scene);
+    let looks_at = Point::new(1.2, 3.2, 1.3);
+    let mut play = Play { control, scene, at: Floor::new(2.6, 3.4), looks_at, steps: 0 };
+    play.control.observe(Observation::PersonEntered(ADA));
+
+    play.wait_for_column("continue");
+    play.walk_to(Floor::new(1.75, 3.2));
+    play.touch("continue", true);
+    play.touch("continue", false);
+    assert_eq!(play.state(), "chair");
+
+    // She sits down, is carried, gets up in the middle, sits down again.
+    play.look_at("cloud_chair");
+    play.walk_to(Floor::new(1.9, 0.7));
+    play.wait_for_column("cloud_chair");
+    play.walk_to(Floor::new(2.7, 2.1));
+    play.arm_contact();
+    play.touch("cloud_chair", true);
+    play.carried(3.5);
+    assert!(play.speed_mps() > 0.1, "the ride has begun");
+    let seat = play.column() + Planar::new(-0.45, 0.0);
+    play.walk_to(seat + Planar::new(-0.3, 0.9));
+    play.touch("cloud_chair", false);
+    play.wait(1.0);
+    assert!(play.speed_mps() < 0.01, "nobody sits on it");
+    let seat = play.column() + Planar::new(-0.45, 0.0);
+    play.walk_to(seat);
+    play.touch("cloud_chair", true);
+    play.carried(20.0);
+    assert_eq!(play.state(), "ghosts");
+    play.touch("cloud_chair", false);
+
+    play.look_at("ghost");
+    play.walk_to(Floor::new(1.6, 2.9));
+    play.walk_to(Floor::new(3.4, 2.0));
+    play.wait_for_column("ghost");
+    play.walk_to(Floor::new(3.4, 0.9));
+    play.arm_contact();
+    let before = play.column();
+    let mut nearest_m = f64::INFINITY;
+    for _ in 0..5_000 {
+        play.step();
+        let fabric = play.column() + Planar::new(0.85, 0.2);
+        nearest_m = nearest_m.min(fabric.distance_m(play.at));
+        if play.state() != "ghosts" {
+            break;
+        }
+    }
+    assert_eq!(play.state(), "end");
+    assert!(nearest_m < 0.1, "the fabric came as near as {nearest_m} m");
+    assert!(play.column().distance_m(before) < 0.05, "and the ghost left");
+    holds(&play.control);
+    let verdict = play.control.true_verdict();
+    assert!(verdict.least_separation_moving_m.is_some_and(|m| m < 0.2), "she rode");
 }
 
 /// The demo's objects, on and off by turns, faster than anybody could show them.

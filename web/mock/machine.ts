@@ -82,6 +82,8 @@ export class MockMachine {
       this.event("request_refused", detail);
       return { outcome: "refused", detail, why: { id: "person_still_tracked", person: "Ada" } };
     }
+    if (request === "disarm_contact") return { outcome: "already_so", detail: "no contact is armed", why: { id: "contact_not_armed" } };
+    if (request === "confirm_free") return { outcome: "already_so", detail: "nobody leans on the column or rides it, somebody looked", why: { id: "nobody_leans" } };
     if (request === "rewind" || (typeof request === "object" && !("confirm_origin" in request))) {
       return { outcome: "refused", detail: "the active scene has no scenario", why: { id: "no_scenario" } };
     }
@@ -177,6 +179,9 @@ export class MockMachine {
         refused_because: request === "stop" ? null : (this.#refusal(request)?.[1] ?? null),
         why: request === "stop" ? null : (this.#refusal(request)?.[0] ?? null),
       })),
+      interaction: null,
+      contact: null,
+      bears: null,
       rules: [
         rule("R1", "travel", [{ id: "inside_travel" }, "inside the travel"]),
         rule("R2", "tracking", [{ id: "headsets_tracked" }, "everybody's headset is tracked"]),

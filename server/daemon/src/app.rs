@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use covr_engine::mode::RequestKind;
 use covr_engine::observation::PersonId;
+use covr_engine::time::Span;
 use covr_engine::{Answer, Outcome, Request};
 use covr_wire::dashboard::request_name;
 use covr_wire::reason::Reason;
@@ -152,6 +153,30 @@ impl App {
     pub async fn confirm_clear(&self, asker: &Asker) -> Result<Answer, NotDelivered> {
         let detail = json!({ "request": "confirm_clear" });
         self.ask_recorded(asker, "confirm_clear", Request::ConfirmClear, detail).await
+    }
+
+    /// A moving column may touch this visitor, for so long at most (R14).
+    pub async fn arm_contact(
+        &self,
+        asker: &Asker,
+        person: PersonId,
+        lasts: Span,
+    ) -> Result<Answer, NotDelivered> {
+        let detail =
+            json!({ "request": "arm_contact", "person": self.persons.name(person), "secs": lasts.secs() });
+        self.ask_recorded(asker, "arm_contact", Request::ArmContact(person, lasts), detail).await
+    }
+
+    /// Nobody may be touched by a moving column any more.
+    pub async fn disarm_contact(&self, asker: &Asker) -> Result<Answer, NotDelivered> {
+        let detail = json!({ "request": "disarm_contact" });
+        self.ask_recorded(asker, "disarm_contact", Request::DisarmContact, detail).await
+    }
+
+    /// Somebody looked: nobody leans on the column or rides it.
+    pub async fn confirm_free(&self, asker: &Asker) -> Result<Answer, NotDelivered> {
+        let detail = json!({ "request": "confirm_free" });
+        self.ask_recorded(asker, "confirm_free", Request::ConfirmFree, detail).await
     }
 
     /// The answer to an order to jog. Who takes the column into their hand is recorded; the orders that follow are not.

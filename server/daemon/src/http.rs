@@ -5,6 +5,7 @@ mod asyncapi;
 mod calibrations;
 mod commissionings;
 mod config;
+mod contact;
 mod events;
 mod gate;
 mod guard;
@@ -57,6 +58,7 @@ pub fn router(app: Arc<App>) -> Router {
                 machine::routes()
                     .merge(scenes::routes())
                     .merge(scenario::routes())
+                    .merge(contact::routes())
                     .merge(priors::routes())
                     .merge(sessions::routes())
                     .merge(config::routes())

@@ -6,6 +6,7 @@
 mod braking;
 mod following;
 mod foretold;
+mod interacting;
 mod jogging;
 mod modes;
 pub mod outlook;
@@ -17,6 +18,7 @@ use std::sync::Arc;
 
 use crate::event::{Event, EventKind};
 use crate::intention::{IntentionParameters, RuleName};
+use crate::interaction::Ask;
 use crate::machine::{Drive, Limits, MachineReport, Travel};
 use crate::mode::Mode;
 use crate::motion::MotionName;
@@ -24,6 +26,7 @@ use crate::motion::standing::StandingName;
 use crate::observation::{Inputs, Observation, PersonId};
 use crate::person::Person;
 use crate::reason::Reason;
+use crate::safety::contact::Contact;
 use crate::safety::governor::Governor;
 use crate::safety::parameters::Parameters;
 use crate::safety::path::State;
@@ -35,9 +38,10 @@ use crate::scene::Scene;
 use crate::snapshot::{RuleId, StopCause};
 use crate::time::{Span, Time};
 use braking::Braking;
-use following::{Following, Offer};
+use following::{Following, Offer, Wish};
 pub use following::{IN_PLACE_M, IN_PLACE_MPS};
 pub use foretold::Foretold;
+use interacting::Interactions;
 use jogging::Jog;
 pub use requests::{Answer, Outcome, Request};
 
@@ -107,6 +111,9 @@ pub struct Engine {
     stepped_at: Option<Time>,
     following: Following,
     jog: Option<Jog>,
+    interactions: Interactions,
+    /// Of the last step.
+    contact: Option<Contact>,
     /// The stop under way, to be measured.
     braking: Option<Braking>,
     events: Vec<Event>,
@@ -148,6 +155,8 @@ impl Engine {
                 config.standing.unwrap_or(config.intention_rule.standing()),
             ),
             jog: None,
+            interactions: Interactions::default(),
+            contact: None,
             braking: None,
             events: Vec::new(),
             pending: Vec::new(),
@@ -217,6 +226,9 @@ impl Engine {
         let offer = Offer { scene: &self.scene, priors: &self.priors, enabled: &self.enabled };
         let wish = self.following.wanted(&self.persons, &offer, now, &self.parameters, &self.config.limits);
         self.play(now);
+        let ask = self.interact(now);
+        let contact = self.contact_of(ask);
+        self.contact = contact.filter(|_| self.mode == Mode::Following);
         let config = &self.config;
         let command = match self.mode {
             Mode::Disarmed | Mode::LatchedStop | Mode::Faulted => self.stop_and_release(now),
@@ -238,9 +250,22 @@ impl Engine {
                     travel: &config.travel,
                     threats: &self.threats,
                     parameters: &self.parameters,
+                    contact,
                 };
                 let measured = State::moving(report.position, report.velocity);
-                if self.mode == Mode::Following {
+                if let (Mode::Following, Ask::Contact(_, wanted), Some(contact)) = (self.mode, ask, contact) {
+                    let choice =
+                        governor.govern_contact(wanted, &contact, &measured, &separation, config.period);
+                    self.supervisor.separation(choice.conflict, now, &mut self.pending);
+                    self.following.rest_at(governor.commanded().position());
+                } else if self.mode == Mode::Following && ask != Ask::Stay {
+                    let wish = match (ask, self.persons.first()) {
+                        (Ask::Go(place), Some(person)) if !self.persons.iter().any(Person::is_unseen) => {
+                            Some(Wish::aside(person.id(), place))
+                        }
+                        (Ask::Go(_), _) => None,
+                        _ => wish,
+                    };
                     let since = now - self.mode_since;
                     self.following.follow(governor, wish, &measured, &separation, since, config.period);
                     match self.following.conflict() {
@@ -299,6 +324,11 @@ impl Engine {
         &self.enabled
     }
 
+    /// The contact that the last step moved in; none: everybody is kept from as the separation rule has it.
+    pub fn contact(&self) -> Option<Contact> {
+        self.contact
+    }
+
     /// What it was built with.
     pub fn config(&self) -> &EngineConfig {
         &self.config
@@ -321,15 +351,18 @@ impl Engine {
         self.stepped_at = Some(now);
     }
 
-    /// Brake at the limit, then release: at rest, or when the brake does not bite (a runaway ends without power alone).
+    /// Brake at the limit, then release: at rest, or when the brake does not bite (a runaway ends without power alone). While somebody
+    /// leans on the column or rides it, it is held instead: only a runaway is worse than what they would fall from.
     fn stop_and_release(&self, now: Time) -> Vetted {
         let Some(report) = self.report.filter(|r| r.drive == Drive::On) else { return Vetted::release(now) };
         let stopped_for = now - self.mode_since;
         // By what it answered: an old answer says nothing of what it does now.
         let rests = self.rests_since.is_some_and(|since| report.answered_at - since >= REST_BEFORE_RELEASE);
+        let bears = self.bears().is_some();
+        let faster_mps = if bears { RUNS_AWAY_BEARING_MPS } else { RUNS_AWAY_MPS };
         let runs_away =
-            stopped_for > BRAKE_BITES_WITHIN && report.velocity.norm() > self.speed_then_mps + RUNS_AWAY_MPS;
-        if rests || runs_away || stopped_for > LONGEST_BRAKE {
+            stopped_for > BRAKE_BITES_WITHIN && report.velocity.norm() > self.speed_then_mps + faster_mps;
+        if runs_away || !bears && (rests || stopped_for > LONGEST_BRAKE) {
             Vetted::release(now)
         } else {
             Vetted::hold(now)
@@ -384,6 +417,8 @@ const LONGEST_BRAKE: Span = Span::from_millis(1500);
 const BRAKE_BITES_WITHIN: Span = Span::from_millis(60);
 /// Faster by this than when the stop began, m/s.
 const RUNS_AWAY_MPS: f64 = 0.05;
+/// The same for a column that somebody leans on, who sways it, m/s.
+const RUNS_AWAY_BEARING_MPS: f64 = 0.3;
 /// A machine that is not homed stands within this of where it says, m.
 const PARKED_WITHIN_M: f64 = 0.3;
 

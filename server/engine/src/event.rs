@@ -77,6 +77,33 @@ pub enum EventKind {
         /// Why.
         because: Reason,
     },
+    /// An interaction is under way.
+    InteractionBegan {
+        /// Index of the object in the scene.
+        object: usize,
+        /// Which.
+        interaction: &'static str,
+        /// With whom, where it is with somebody.
+        person: Option<PersonId>,
+    },
+    /// It is not any more.
+    InteractionEnded {
+        /// Index of the object in the scene.
+        object: usize,
+        /// Which.
+        interaction: &'static str,
+        /// With whom, where it was with somebody.
+        person: Option<PersonId>,
+        /// Why.
+        because: Reason,
+    },
+    /// A contact is armed for this visitor no more (R14).
+    ContactOver {
+        /// Who.
+        person: PersonId,
+        /// Why.
+        because: Reason,
+    },
     /// The scenario entered a state.
     StateEntered {
         /// The state before; none: a run begins.
@@ -108,6 +135,8 @@ pub enum WhyState {
     ZoneEntered(PersonId, String),
     /// A person went out of the zone.
     ZoneLeft(PersonId, String),
+    /// The interaction at the object came to its end.
+    InteractionDone(String),
     /// A VR client said this.
     ClientEvent(String),
     /// A game master gave this cue.

@@ -9,6 +9,7 @@ pub mod engine;
 pub mod event;
 pub mod frames;
 pub mod intention;
+pub mod interaction;
 pub mod machine;
 pub mod mode;
 pub mod motion;

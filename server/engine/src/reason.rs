@@ -13,8 +13,6 @@ use crate::snapshot::RuleId;
 pub enum Reason {
     /// The rule has nothing to watch now.
     NothingToWatch,
-    /// This version does not watch the rule.
-    NotWatched,
     /// R1: inside the travel.
     InsideTravel,
     /// R1: the column is past its travel by so much, m.
@@ -254,4 +252,44 @@ pub enum Reason {
     NothingBefore,
     /// Scenario: it is in the state of this id.
     NowInState(String),
+    /// R14: no contact is armed.
+    ContactNotArmed,
+    /// R14: a contact is armed for this visitor.
+    ContactArmed(PersonId),
+    /// R14: a contact is under way.
+    InContact {
+        /// With whom.
+        person: PersonId,
+        /// The interaction's name.
+        interaction: String,
+    },
+    /// R14: the active scene has no interaction in which a moving column touches somebody.
+    NoContactInteraction,
+    /// R14: a contact is armed for this many seconds at least and at most.
+    ContactSecs {
+        /// s.
+        least: f64,
+        /// s.
+        most: f64,
+    },
+    /// R14: a contact was armed for another visitor.
+    ContactForAnother(PersonId),
+    /// R14: the contact was taken back.
+    ContactTakenBack,
+    /// R14: the time for which the contact was armed is over.
+    ContactTimeOver,
+    /// R14: the visitor's headset is not tracked.
+    PersonNotTracked(PersonId),
+    /// Interaction: the visitor let go.
+    InteractionLetGo,
+    /// Interaction: the visitor is not on the seat any more.
+    SteppedOff,
+    /// Interaction: the visitor means another object.
+    AnotherIsMeant,
+    /// Interaction: the scenario's state was left.
+    StateLeft,
+    /// Interaction: the machine is in another mode.
+    InteractionStopped(Mode),
+    /// Interaction: nobody leans on the column or rides it.
+    NobodyLeans,
 }

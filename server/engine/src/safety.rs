@@ -2,6 +2,7 @@
 //!
 //! It never imports `intention`. It is small and plain on purpose.
 
+pub mod contact;
 pub mod governor;
 pub mod parameters;
 pub mod path;

@@ -32,8 +32,8 @@ pub use check::{Finding, Stage};
 pub use play::{Change, Happening, NextTransition, Play, PlayState, WhyEntered};
 pub use senses::Senses;
 pub use spec::{
-    Act, Comparison, Condition, Interaction, Prior, ScenarioProblem, ScenarioSpec, StateSpec, Transition,
-    Trigger, Value, VariableSpec,
+    Act, Comparison, Condition, Course, Interaction, Prior, ScenarioProblem, ScenarioSpec, StateSpec,
+    Transition, Trigger, Value, VariableSpec,
 };
 
 /// A scenario, right once built: every reference is to something that is there.
@@ -66,6 +66,8 @@ pub struct State {
     enabled: Vec<bool>,
     /// By object; none: the scene's.
     priors: Vec<Option<Prior>>,
+    /// By object.
+    interactions: Vec<Option<Interaction>>,
     entry: Vec<Act<usize>>,
     transitions: Vec<Transition<usize>>,
     is_final: bool,
@@ -141,6 +143,11 @@ impl State {
     /// Which objects can be served in it.
     pub fn enabled(&self) -> &[bool] {
         &self.enabled
+    }
+
+    /// What the column does at each object in it.
+    pub fn interactions(&self) -> &[Option<Interaction>] {
+        &self.interactions
     }
 
     /// The scenario ends in it.

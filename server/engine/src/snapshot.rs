@@ -31,6 +31,12 @@ pub struct Snapshot {
     pub objects: Vec<ObjectState>,
     /// The scenario; none where the scene has none.
     pub scenario: Option<ScenarioState>,
+    /// The interaction under way.
+    pub interaction: Option<InteractionState>,
+    /// For whom a contact is armed (R14).
+    pub contact: Option<ContactState>,
+    /// Who leans on the column or rides it, as far as is known: a stop keeps the drive on.
+    pub bears: Option<PersonId>,
     /// The intention rule in use, by name.
     pub intention_rule: &'static str,
     /// Where the column stands while it is not plain what will be touched, by name.
@@ -141,6 +147,8 @@ pub enum Activity {
     Blocked,
     /// It stands where it is wanted.
     InPlace,
+    /// An interaction is under way.
+    Interacting,
     /// Stopped, or braking for a stop.
     Stopped,
 }
@@ -223,6 +231,30 @@ pub struct ObjectState {
     pub angle_rad: Option<f64>,
     /// From the visitor's head to its surface, m; none without a visitor.
     pub distance_m: Option<f64>,
+}
+
+/// The interaction under way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InteractionState {
+    /// Its object, as an index into `objects`.
+    pub object: usize,
+    /// Which, by name.
+    pub interaction: &'static str,
+    /// What it is about, by name.
+    pub phase: &'static str,
+    /// With whom, where it is with somebody.
+    pub person: Option<PersonId>,
+    /// For how long it has been under way, s.
+    pub lasted_secs: f64,
+}
+
+/// A contact armed for a visitor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactState {
+    /// Who.
+    pub person: PersonId,
+    /// It ends by itself in so long, s.
+    pub left_secs: f64,
 }
 
 /// The scenario now; states and variables by id.

@@ -8,6 +8,7 @@
 //! to rest at s_end. It may be moving only if for every person and every s in [0, s_end] `d(c(s)) > r + v_h s`, or it
 //! retreats from that one person. [`separation`] holds the rule and its allowances, clause by clause.
 
+mod contact;
 mod geometry;
 mod limits;
 mod separation;
@@ -19,6 +20,7 @@ use covr_engine::observation::PersonId;
 use covr_engine::scene::KeepOutShape;
 use covr_engine::time::{Span, Time};
 
+use contact::ContactWatch;
 pub use geometry::Rectangle;
 pub use limits::{Axis, Quantity};
 use limits::{LimitsWatch, travel_breach};
@@ -74,8 +76,30 @@ pub struct PersonNow {
     pub height_m: f64,
     /// From the head to the nearest surface of an enabled object, m; none without an enabled object.
     pub to_enabled_object_m: Option<f64>,
-    /// A contact interaction is armed for this person: its own limits replace this rule.
-    pub contact_armed: bool,
+    /// A contact interaction is under way with this person: its own limits replace this rule (R14).
+    pub contact: Option<ContactNow>,
+}
+
+/// A contact interaction with a person, as far as the checker needs to know it: from the record, not from the engine's safety room.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactNow {
+    /// Which.
+    pub kind: ContactKind,
+    /// The rectangle of the prop in contact, as an index into the footprint; none: the prop takes no floor, or is the column itself.
+    pub rectangle: Option<usize>,
+    /// From the column's centre to the prop's point of touch, m.
+    pub offset: Planar,
+}
+
+/// The contact interactions of R14.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactKind {
+    /// Somebody holds on and is pulled.
+    Lead,
+    /// Somebody sits on it and is carried.
+    Transport,
+    /// A prop comes up to somebody.
+    Brush,
 }
 
 /// Everything that the checker is told at one tick.
@@ -101,6 +125,7 @@ pub struct Checker {
     rules: Rules,
     track: Track,
     separation: SeparationWatch,
+    contacts: ContactWatch,
     limits: LimitsWatch,
     verdict: Verdict,
 }
@@ -132,6 +157,7 @@ impl Checker {
             rules,
             track,
             separation: SeparationWatch::default(),
+            contacts: ContactWatch::default(),
             limits: LimitsWatch::default(),
             verdict: Verdict::default(),
         }
@@ -156,6 +182,7 @@ impl Checker {
             self.verdict.moving_ticks += 1;
         }
         self.check_separation(moment, moving);
+        self.check_contacts(moment);
         if moment.homed {
             self.check_travel(moment, moving);
         }
@@ -203,6 +230,13 @@ impl Checker {
                     );
                 }
             }
+        }
+    }
+
+    fn check_contacts(&mut self, moment: &Moment<'_>) {
+        for breach in self.contacts.tick(&self.rules, moment, self.track) {
+            self.verdict.contact += 1;
+            self.keep(moment, breach);
         }
     }
 
@@ -272,7 +306,7 @@ mod tests {
             head: Floor::new(x, 2.0),
             height_m: 1.6,
             to_enabled_object_m: None,
-            contact_armed: false,
+            contact: None,
         }
     }
 

@@ -5,6 +5,7 @@ mod adversary;
 mod faults;
 mod inputs;
 mod operator;
+mod playmate;
 mod proof;
 mod world;
 
@@ -42,6 +43,8 @@ pub struct Findings {
     pub moving_ticks: u64,
     /// Steps in the mode `following`.
     pub following: u64,
+    /// Steps in which the column moved in contact with somebody (R14).
+    pub in_contact: u64,
     /// Moving ticks legal only as a retreat.
     pub retreating: u64,
     /// Moving ticks excused because r grew or a person appeared, or a retreat was overtaken.
@@ -85,6 +88,7 @@ pub fn prove(campaign: &Campaign, progress: &(dyn Fn(u64) + Sync)) -> Result<Fin
         violations: total(Proof::violations),
         moving_ticks: total(|proof| proof.truth.moving_ticks),
         following: total(|proof| proof.following),
+        in_contact: total(|proof| proof.in_contact),
         retreating: total(|proof| proof.truth.retreating),
         excused: total(|proof| proof.truth.excused_growth + proof.truth.apart_overtaken_retreat),
         least_separation_moving_m: proofs
@@ -99,8 +103,9 @@ pub fn prove(campaign: &Campaign, progress: &(dyn Fn(u64) + Sync)) -> Result<Fin
 /// it does not need.
 pub fn shrink(proof: &Proof) -> Proof {
     let mut least = proof.clone();
-    let parts =
-        [Part::Faults, Part::Operator, Part::Inputs].into_iter().chain((0..proof.people).map(Part::Person));
+    let parts = [Part::Scenario, Part::Faults, Part::Operator, Part::Inputs]
+        .into_iter()
+        .chain((0..proof.people).map(Part::Person));
     for part in parts.filter(|part| !proof.case.without.contains(part)) {
         let mut case = least.case.clone();
         case.without.push(part);
@@ -127,12 +132,13 @@ impl Part {
             "operator" => Ok(Self::Operator),
             "faults" => Ok(Self::Faults),
             "inputs" => Ok(Self::Inputs),
+            "scenario" => Ok(Self::Scenario),
             other => other
                 .strip_prefix("person-")
                 .and_then(|number| number.parse().ok())
                 .map(Self::Person)
                 .ok_or_else(|| {
-                    format!("\"{other}\": expected operator, faults, inputs, person-0, person-1 or person-2")
+                    format!("\"{other}\": expected operator, faults, inputs, scenario, person-0, person-1 or person-2")
                 }),
         }
     }
@@ -144,6 +150,7 @@ impl fmt::Display for Part {
             Self::Operator => f.write_str("operator"),
             Self::Faults => f.write_str("faults"),
             Self::Inputs => f.write_str("inputs"),
+            Self::Scenario => f.write_str("scenario"),
             Self::Person(number) => write!(f, "person-{number}"),
         }
     }
@@ -181,10 +188,11 @@ impl fmt::Display for Findings {
         let share = |part: u64| 100.0 * part as f64 / self.steps.max(1) as f64;
         writeln!(
             f,
-            "worlds {}, following {:.0} %, moving {:.0} %",
+            "worlds {}, following {:.0} %, moving {:.0} %, in contact {:.1} %",
             self.worlds,
             share(self.following),
-            share(self.moving_ticks)
+            share(self.moving_ticks),
+            share(self.in_contact)
         )?;
         let least = self.least_separation_moving_m.map_or_else(|| "none".to_owned(), |m| format!("{m:.2} m"));
         writeln!(
@@ -210,7 +218,7 @@ mod tests {
         let without = vec![Part::Faults, Part::Person(1)];
         let case = Case { seed: 7, steps: 100, v_h_mps: Some(1.6), without };
         assert_eq!(case.to_string(), "covr prove --steps 100 --seed 7 --v-h 1.6 --without faults,person-1");
-        for part in [Part::Faults, Part::Operator, Part::Inputs, Part::Person(2)] {
+        for part in [Part::Faults, Part::Operator, Part::Inputs, Part::Scenario, Part::Person(2)] {
             assert_eq!(Part::parse(&part.to_string()), Ok(part));
         }
         assert!(Part::parse("person-x").unwrap_err().contains("expected operator"));

@@ -20,13 +20,16 @@ use covr_engine::frames::{Pose, Room};
 use covr_engine::machine::{Homing, Limits, MachineReport, Travel};
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::observation::{Observation, PersonId, PoseSample};
+use covr_engine::safety::contact::{Contact, ContactKind as Kind};
 use covr_engine::safety::vetted::{Action, Vetted};
 use covr_engine::scene::{Scene, SceneSpec};
 use covr_engine::time::{Span, Time};
 use covr_gantry::contract::{Simulated, Truth};
 use covr_gantry::sim::faults::Faults;
 
-use crate::checker::{Checker, Moment, Motion, PersonNow, Rectangle, Rules, Track, Verdict};
+use crate::checker::{
+    Checker, ContactKind, ContactNow, Moment, Motion, PersonNow, Rectangle, Rules, Track, Verdict,
+};
 use crate::random::Random;
 pub use belief::{BeliefThen, BeliefTold, LOOKS_BEFORE_REACH_SECS};
 pub use foretold::FORETOLD_BEFORE_REACH_SECS;
@@ -230,6 +233,8 @@ impl ClosedLoop {
         for (near, enabled) in self.near.iter_mut().zip(self.engine.enabled()) {
             *near = *enabled || *near && !rests;
         }
+        let contact =
+            self.engine.contact().map(|contact| (contact.person, contact_now(&contact, scene.spec())));
         self.persons.clear();
         self.persons.extend(heads.iter().map(|head| {
             let nearest_m = scene.nearest_object_m(&head.pose.position, &self.near);
@@ -238,7 +243,7 @@ impl ClosedLoop {
                 head: head.pose.position.floor(),
                 height_m: head.pose.position.z(),
                 to_enabled_object_m: nearest_m.is_finite().then_some(nearest_m),
-                contact_armed: false,
+                contact: contact.filter(|(person, _)| *person == head.person).map(|(_, contact)| contact),
             }
         }));
         let truly = Motion { position: truth.position, velocity: truth.velocity };
@@ -266,6 +271,21 @@ impl ClosedLoop {
 
 /// Slower than this the column rests, m/s.
 const RESTS_MPS: f64 = 0.01;
+
+/// A contact as the checker is told of it.
+fn contact_now(contact: &Contact, scene: &SceneSpec) -> ContactNow {
+    let takes_floor = |prop: &usize| scene.props[*prop].size_m.norm() > 0.0;
+    let before = |prop: usize| (0..prop).filter(takes_floor).count();
+    ContactNow {
+        kind: match contact.kind {
+            Kind::Lead => ContactKind::Lead,
+            Kind::Transport => ContactKind::Transport,
+            Kind::Brush => ContactKind::Brush,
+        },
+        rectangle: contact.prop.filter(takes_floor).map(|prop| 1 + before(prop)),
+        offset: contact.offset,
+    }
+}
 
 /// The rules of the checker for a machine and a scene, taken from the scene's description alone.
 pub fn rules_of(limits: Limits, travel: Travel, scene: &SceneSpec) -> Rules {

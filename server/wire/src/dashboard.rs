@@ -19,8 +19,8 @@ pub(crate) use convert::{clears_when, name_of};
 pub use event::rule_title;
 pub use health::{MachineHealth, MachineLink};
 pub use snapshot::{
-    Activity, Client, Column, ControlLoop, Decision, Mode, NextState, Object, Person, RequestState,
-    RuleState, RuleStatus, Scenario, SeparationTerm, SeparationTerms, Snapshot, StopCause,
+    Activity, Client, Column, Contact, ControlLoop, Decision, Interaction, Mode, NextState, Object, Person,
+    RequestState, RuleState, RuleStatus, Scenario, SeparationTerm, SeparationTerms, Snapshot, StopCause,
 };
 
 use crate::reason::Reason;
@@ -95,7 +95,7 @@ impl JogAim {
 }
 
 /// A request to the machine, other than stop.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
 #[serde(rename_all = "snake_case")]
 pub enum MachineRequest {
     /// Find the switches. Whoever asks says that the arena is clear.
@@ -118,6 +118,18 @@ pub enum MachineRequest {
     SkipTo(String),
     /// Back to the scenario's state before, with the variables as they were.
     Rewind,
+    /// A moving column may touch this visitor (R14): in the interactions lead, transport and brush.
+    ArmContact {
+        /// The visitor's id.
+        person: u32,
+        /// For so long at most, s.
+        #[schemars(range(min = 1.0, max = 300.0))]
+        secs: f64,
+    },
+    /// Nobody may be touched by a moving column any more.
+    DisarmContact,
+    /// Somebody looked: nobody leans on the column or rides it. A stop that kept the drive on lets it go.
+    ConfirmFree,
 }
 
 /// What the server says to a dashboard.
@@ -234,7 +246,7 @@ pub struct Event {
 
 impl Event {
     /// Every kind.
-    pub const KINDS: [&'static str; 28] = [
+    pub const KINDS: [&'static str; 31] = [
         "mode_changed",
         "rule_breached",
         "rule_cleared",
@@ -254,6 +266,9 @@ impl Event {
         "scene_activated",
         "state_entered",
         "scenario_cut",
+        "interaction_began",
+        "interaction_ended",
+        "contact_over",
         "prior_changed",
         "client_connected",
         "client_gone",

@@ -28,8 +28,6 @@ use crate::dashboard::Mode;
 pub enum Reason {
     /// The rule has nothing to watch now.
     NothingToWatch,
-    /// This version does not watch the rule.
-    NotWatched,
     /// R1: inside the travel.
     InsideTravel,
     /// R1: the column is past its travel.
@@ -406,6 +404,69 @@ pub enum Reason {
         /// The state's id.
         state: String,
     },
+    /// Column: an interaction is under way.
+    Interacts {
+        /// Its name.
+        interaction: String,
+        /// What it is about.
+        phase: String,
+        /// Id of its object.
+        object: String,
+        /// Name of whom it is with.
+        person: Option<String>,
+    },
+    /// R14: no contact is armed.
+    ContactNotArmed,
+    /// R14: a contact is armed for this visitor.
+    ContactArmed {
+        /// Name.
+        person: String,
+    },
+    /// R14: a contact is under way.
+    InContact {
+        /// Name.
+        person: String,
+        /// `lead`, `transport` or `brush`.
+        interaction: String,
+    },
+    /// R14: the active scene has no interaction in which a moving column touches somebody.
+    NoContactInteraction,
+    /// R14: a contact is armed for this many seconds.
+    ContactSecs {
+        /// At least, s.
+        least: f64,
+        /// At most, s.
+        most: f64,
+    },
+    /// R14: the contact was armed for another visitor.
+    ContactForAnother {
+        /// Name.
+        person: String,
+    },
+    /// R14: the contact was taken back.
+    ContactTakenBack,
+    /// R14: the time for which the contact was armed is over.
+    ContactTimeOver,
+    /// R14: the visitor's headset is not tracked.
+    PersonNotTracked {
+        /// Name.
+        person: String,
+    },
+    /// Interaction: the visitor let go.
+    InteractionLetGo,
+    /// Interaction: the visitor is not on the seat any more.
+    SteppedOff,
+    /// Interaction: the visitor means another object.
+    AnotherIsMeant,
+    /// Interaction: the scenario's state was left.
+    StateLeft,
+    /// Interaction: the machine is in another mode.
+    InteractionStopped {
+        /// Which.
+        mode: Mode,
+    },
+    /// Interaction: nobody leans on the column or rides it.
+    NobodyLeans,
     /// Scenario: skipping and going back need a reason.
     SkipNeedsReason,
     /// The control loop's queue is full.

@@ -8,8 +8,8 @@ use covr_engine::safety::separation::Terms;
 use covr_engine::scenario::Value;
 use covr_engine::scene::Scene;
 use covr_engine::snapshot::{
-    Activity, ColumnState, NextState, ObjectState, PersonState, RuleId, RuleState, RuleStatus, ScenarioState,
-    Snapshot, StopCause,
+    Activity, ColumnState, ContactState, InteractionState, NextState, ObjectState, PersonState, RuleId,
+    RuleState, RuleStatus, ScenarioState, Snapshot, StopCause,
 };
 use covr_engine::time::Time;
 use nalgebra::UnitQuaternion;
@@ -117,6 +117,15 @@ pub(crate) fn snapshot() -> Snapshot {
         mode_since: at,
         stop: Some(StopCause { rule: RuleId(2), reason: Reason::PoseTooOld(PersonId(3), 0.6), since: at }),
         refusals: vec![(RequestKind::Reset, Some(Reason::NothingToReset))],
+        interaction: Some(InteractionState {
+            object: 0,
+            interaction: "hold",
+            phase: "holding",
+            person: Some(PersonId(3)),
+            lasted_secs: 1.5,
+        }),
+        contact: Some(ContactState { person: PersonId(3), left_secs: 30.0 }),
+        bears: Some(PersonId(3)),
         rules: vec![RuleState {
             rule: RuleId(1),
             status: RuleStatus::Clear,

@@ -9,8 +9,8 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 const TRAVEL: Travel = Travel { min: Floor::new(0.0, 0.0), max: Floor::new(4.0, 4.0) };
-const EXAMPLES: [&str; 5] =
-    ["demo.json", "kitchen.json", "paper-demo.json", "gallery.json", "escape-room.json"];
+const EXAMPLES: [&str; 6] =
+    ["demo.json", "kitchen.json", "paper-demo.json", "gallery.json", "escape-room.json", "clouds.json"];
 
 fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../deploy/scenes").join(name);
@@ -335,7 +335,7 @@ fn twelve_mistakes_in_a_scenario_are_said_at_once_each_with_its_line() {
     "states": [
       {"id": "one", "enabled": ["c"],
        "priors": {"b": 0.4},
-       "interactions": {"a": "lead"},
+       "interactions": {"a": {"kind": "lead", "path": [[1, 1]], "speed": 2}},
        "transitions": [
          {"when": {"kind": "in_zone", "zone": "rug"}, "to": "two"},
          {"when": {"kind": "variable", "variable": "n", "is": "==", "value": true}, "to": "one"}
@@ -357,7 +357,7 @@ fn twelve_mistakes_in_a_scenario_are_said_at_once_each_with_its_line() {
             (11, "$.scenario.initial"),
             (14, "$.scenario.states[0].enabled[0]"),
             (15, "$.scenario.states[0].priors.b"),
-            (16, "$.scenario.states[0].interactions.a"),
+            (16, "$.scenario.states[0].interactions.a.speed"),
             (18, "$.scenario.states[0].transitions[0].when.zone"),
             (18, "$.scenario.states[0].transitions[0].to"),
             (19, "$.scenario.states[0].transitions[1].when.value"),
@@ -367,7 +367,10 @@ fn twelve_mistakes_in_a_scenario_are_said_at_once_each_with_its_line() {
             (23, "$.scenario.states[1].transitions"),
         ]
     );
-    assert!(errors[4].found.contains("\"lead\", which this version cannot do"), "{}", errors[4]);
+    assert_eq!(
+        (errors[4].found.as_str(), errors[4].expected.as_str()),
+        ("2", "a number from 0.05 to 0.6 m/s (R14)")
+    );
 }
 
 #[test]

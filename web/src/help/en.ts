@@ -236,10 +236,10 @@ export const help: HelpText = {
       clears: "By itself.",
     },
     R14: {
-      watches: "Meant to be: the limits of contact on purpose, when the column leads, carries or brushes a visitor.",
-      happens: "Nothing in this version: such interactions do not exist yet.",
-      you: "Nothing.",
-      clears: "There is nothing to clear.",
+      watches: "Contact on purpose, when the column leads, carries or brushes a visitor: only where you armed it for that visitor, no faster than 0.6 m/s (brush 0.3 m/s), gently, and for the time that you gave.",
+      happens: "Whoever lets go, steps off or stands in the way makes it brake. Every stop, a lost headset, the end of the time and your page gone end it. Towards everybody else R3 stands as ever.",
+      you: "Arm it on the page Scenario when the visitor is ready, and look on. If somebody sits on the column or leans on it while it is stopped, the drive stays on: help them off, then say that nobody leans.",
+      clears: "By itself; arm it again.",
     },
     R15: {
       watches: "That nobody’s tracking origin changes unnoticed: a recentre, a jump, a headset taken off.",

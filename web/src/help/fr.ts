@@ -236,10 +236,10 @@ export const help: HelpText = {
       clears: "D’elle-même.",
     },
     R14: {
-      watches: "Prévu : les limites du contact voulu, quand la colonne guide, porte ou effleure un visiteur.",
-      happens: "Rien dans cette version : ces interactions n’existent pas encore.",
-      you: "Rien.",
-      clears: "Il n’y a rien à lever.",
+      watches: "Le contact voulu, quand la colonne guide, porte ou effleure un visiteur : seulement si vous l’avez autorisé pour ce visiteur, pas plus vite que 0,6 m/s (effleurer : 0,3 m/s), en douceur, et pour la durée donnée.",
+      happens: "Qui lâche, descend ou se tient sur le chemin la fait freiner. Tout arrêt, un casque perdu, la fin du temps et votre page partie y mettent fin. Envers tous les autres, R3 vaut comme toujours.",
+      you: "Autorisez-le sur la page Scénario quand le visiteur est prêt, et regardez. Si quelqu’un est assis sur la colonne ou s’y appuie pendant un arrêt, l’entraînement reste sous tension : aidez-le, puis dites que personne ne s’appuie.",
+      clears: "De lui-même ; autorisez-le de nouveau.",
     },
     R15: {
       watches: "Aucune origine de suivi ne change sans qu’on le remarque : recentrage, saut, casque retiré.",

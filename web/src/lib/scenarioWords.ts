@@ -38,6 +38,7 @@ function triggerWords(trigger: Trigger, scene: SceneDocument): string {
   switch (trigger.kind) {
     case "touch_began":
     case "touch_ended":
+    case "interaction_done":
       return say[trigger.kind](labelOf(scene, trigger.object));
     case "zone_entered":
     case "zone_left":

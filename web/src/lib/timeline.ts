@@ -6,7 +6,7 @@ export const GROUPS = {
   stops: ["stop_pressed", "came_to_rest"],
   rules: ["rule_breached", "rule_cleared"],
   mode: ["mode_changed", "request_accepted", "request_refused", "jog_began", "jog_ended"],
-  people: ["person_entered", "person_left", "served", "origin_changed", "touch_began", "touch_ended"],
+  people: ["person_entered", "person_left", "served", "origin_changed", "touch_began", "touch_ended", "interaction_began", "interaction_ended", "contact_over"],
   priors: ["prior_changed"],
   scenes: ["scene_activated", "scene_stored", "scene_event"],
   clients: ["client_connected", "client_gone", "client_error", "signed_in", "signed_out", "token_made", "token_revoked", "token_taken_back"],

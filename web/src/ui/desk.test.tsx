@@ -96,7 +96,7 @@ describe("the timeline", () => {
     fireEvent.click(screen.getByTestId("timeline-group-people"));
     expect(listed()).toBe(1);
     await vi.waitFor(() => {
-      expect(vi.mocked(http.readEvents).mock.lastCall?.[0]).toMatchObject({ kinds: ["person_entered", "person_left", "served", "origin_changed", "touch_began", "touch_ended"] });
+      expect(vi.mocked(http.readEvents).mock.lastCall?.[0]).toMatchObject({ kinds: ["person_entered", "person_left", "served", "origin_changed", "touch_began", "touch_ended", "interaction_began", "interaction_ended", "contact_over"] });
     });
   });
 

@@ -93,6 +93,15 @@ function textOf(event: WireEvent, label: (object: string) => string): EventWords
       const because = detail["why"];
       return { text: text.jog_ended, server: isReason(because) ? said(because, event.summary, label) : null };
     }
+    case "interaction_began":
+    case "interaction_ended": {
+      const [name, object, because] = [field("interaction"), field("object"), detail["why"]];
+      if (name === null || object === null || !Object.hasOwn(text.interactions, name)) return null;
+      const interaction = text.interactions[name as keyof typeof text.interactions];
+      return { text: text[event.kind](interaction, label(object)), server: isReason(because) ? said(because, event.summary, label) : null };
+    }
+    case "contact_over":
+      return of(text.contact_over, ["name"], why("detail"));
     case "served":
       return of(text.served, ["object", "name"]);
     case "touch_began":

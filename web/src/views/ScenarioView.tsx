@@ -8,6 +8,7 @@ import { cuesOf, stateLabel, valueWords, waitsFor } from "../lib/scenarioWords";
 import type { Live } from "../live/live";
 import type { Answer } from "../live/requests";
 import { wordsOf } from "../ui/Controls";
+import { ContactPanel } from "../ui/scenario/ContactPanel";
 import { SkipPanel, type Leap } from "../ui/scenario/SkipPanel";
 import { StateGraphPanel } from "../ui/scenario/StateGraphPanel";
 
@@ -51,6 +52,9 @@ export function ScenarioView(props: { readonly live: Live }): JSX.Element {
                 <div class="scenario-panels">
                   <NowPanel scene={document()} now={scenario()} objects={props.live.snapshot()?.objects ?? []} />
                   <NextPanel scene={document()} now={scenario()} />
+                  <Show when={props.live.snapshot()}>
+                    {(snapshot) => <ContactPanel scene={document()} snapshot={snapshot()} may={may("arm_contact")} ask={(request, what) => void ask(request, what)} />}
+                  </Show>
                   <CuePanel scene={document()} now={scenario()} may={may("cue") && scenario().runs} give={(name) => void ask({ cue: name }, name)} />
                   <SkipPanel
                     scene={document()}

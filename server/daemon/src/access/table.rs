@@ -59,6 +59,9 @@ pub const fn dashboard_key(message: &FromDashboard) -> &'static str {
             MachineRequest::Cue(_) => "dashboard cue",
             MachineRequest::SkipTo(_) => "dashboard skip_to",
             MachineRequest::Rewind => "dashboard rewind",
+            MachineRequest::ArmContact { .. } => "dashboard arm_contact",
+            MachineRequest::DisarmContact => "dashboard disarm_contact",
+            MachineRequest::ConfirmFree => "dashboard confirm_free",
         },
     }
 }
@@ -173,6 +176,12 @@ const TABLE: &[(&str, Who)] = &[
     ("dashboard cue", RUN),
     ("dashboard skip_to", RUN),
     ("dashboard rewind", RUN),
+    ("POST /api/v1/contact/arm", RUN),
+    ("POST /api/v1/contact/disarm", RUN),
+    ("POST /api/v1/contact/free", RUN),
+    ("dashboard arm_contact", RUN),
+    ("dashboard disarm_contact", RUN),
+    ("dashboard confirm_free", RUN),
 ];
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use axum::response::{IntoResponse, Response};
 use covr_engine::Answer;
 use covr_engine::mode::RequestKind;
 use covr_engine::observation::PersonId;
+use covr_engine::time::Span;
 use covr_wire::dashboard::{FromDashboard, MachineRequest, MachineShape, Outcome, Snapshot, ToDashboard};
 use covr_wire::reason::Reason;
 use futures_util::StreamExt;
@@ -247,6 +248,11 @@ async fn ask(
         MachineRequest::Reset if reason.is_none() => return Err(Reason::ResetNeedsReason),
         MachineRequest::Reset => app.request(asker, RequestKind::Reset, reason).await,
         MachineRequest::ConfirmClear => app.confirm_clear(asker).await,
+        MachineRequest::ArmContact { person, secs } => {
+            app.arm_contact(asker, PersonId(person), Span::from_secs(secs)).await
+        }
+        MachineRequest::DisarmContact => app.disarm_contact(asker).await,
+        MachineRequest::ConfirmFree => app.confirm_free(asker).await,
         MachineRequest::Cue(name) => app.cue(asker, name).await,
         MachineRequest::SkipTo(_) | MachineRequest::Rewind if reason.is_none() => {
             return Err(Reason::SkipNeedsReason);

@@ -32,6 +32,13 @@ pub struct Wish {
     pub touch_secs: Option<f64>,
 }
 
+impl Wish {
+    /// To be at a place for no object's sake.
+    pub const fn aside(visitor: PersonId, target: Floor) -> Self {
+        Self { visitor, target, committed: None, touch_secs: None }
+    }
+}
+
 /// What can be served, and how likely it is.
 #[derive(Debug, Clone, Copy)]
 pub struct Offer<'a> {

@@ -161,6 +161,7 @@ impl Outlook {
                     travel: &self.travel,
                     threats: &threats,
                     parameters: &self.parameters,
+                    contact: None,
                 };
                 let commanded = governor.commanded();
                 let measured = State::moving(commanded.position(), commanded.velocity());

@@ -71,6 +71,7 @@ impl Engine {
                 play.let_go(scenario, person, object, runs)
             };
             self.tell(scenario, changes);
+            self.hand_off();
         }
     }
 
@@ -236,7 +237,7 @@ impl Engine {
     }
 
     /// For the record; and what a new state says is in force at once.
-    fn tell(&mut self, scenario: &Scenario, changes: Vec<Change>) {
+    pub(super) fn tell(&mut self, scenario: &Scenario, changes: Vec<Change>) {
         if changes.is_empty() {
             return;
         }
@@ -296,6 +297,7 @@ fn named(why: WhyEntered, scenario: &Scenario, scene: &Scene) -> WhyState {
     match (trigger, person) {
         (Trigger::Cue(i), _) => WhyState::Cue(scenario.cues()[i].to_string()),
         (Trigger::ClientEvent(i), _) => WhyState::ClientEvent(scenario.client_events()[i].to_string()),
+        (Trigger::InteractionDone(i), _) => WhyState::InteractionDone(object(i)),
         (Trigger::TouchBegan(i), Some(person)) => WhyState::TouchBegan(person, object(i)),
         (Trigger::TouchEnded(i), Some(person)) => WhyState::TouchEnded(person, object(i)),
         (Trigger::ZoneEntered(i), Some(person)) => WhyState::ZoneEntered(person, zone(i)),

@@ -16,7 +16,7 @@ use crate::safety::supervisor::GameMaster;
 use crate::scene::Scene;
 use crate::scene::footprint::KeepOut;
 use crate::snapshot::RuleId;
-use crate::time::Time;
+use crate::time::{Span, Time};
 
 /// What somebody asks.
 #[derive(Debug, Clone)]
@@ -45,6 +45,12 @@ pub enum Request {
     SkipTo(String, String),
     /// Back to the state before, for this reason.
     Rewind(String),
+    /// A moving column may touch this visitor, for so long at most (R14).
+    ArmContact(PersonId, Span),
+    /// Nobody may be touched by a moving column any more.
+    DisarmContact,
+    /// Somebody looked: nobody leans on the column or rides it.
+    ConfirmFree,
 }
 
 /// What came of a request.
@@ -83,6 +89,9 @@ impl Engine {
             Request::ClientEvent(name) => self.client_event(&name),
             Request::SkipTo(state, reason) => self.skip_to(&state, reason),
             Request::Rewind(reason) => self.rewind(reason),
+            Request::ArmContact(person, lasts) => self.arm_contact(now, person, lasts),
+            Request::DisarmContact => self.take_contact_back(),
+            Request::ConfirmFree => self.confirm_free(),
         };
         self.record(now);
         answer
@@ -191,6 +200,7 @@ impl Engine {
             // Whoever said that nobody is there looked before this person came; a headset that is off is no look.
             self.arena_confirmed_clear = false;
             self.leave_the_play(id);
+            self.hand_off();
         }
     }
 
@@ -224,6 +234,7 @@ impl Engine {
                 return refused(Reason::ColumnInKeepOut { keep_out, required_m: self.parameters.radius_m });
             }
         }
+        self.forget_interactions();
         self.set_the_stage(scene);
         self.following.forget_visitors();
         self.place_everybody();

@@ -3,6 +3,7 @@
 mod foretold;
 mod game_master;
 mod inputs;
+mod interacting;
 mod jog;
 mod modes;
 mod playing;

@@ -43,6 +43,9 @@ impl Engine {
             persons: self.persons.iter().map(|p| self.person_state(p, now)).collect(),
             objects: self.objects(),
             scenario: self.scenario_state(),
+            interaction: self.interaction_state(now),
+            contact: self.contact_state(now),
+            bears: self.bears(),
             intention_rule: self.following.rule().name(),
             standing: self.following.standing().name(),
             motion: self.following.motion().name(),
@@ -95,6 +98,9 @@ impl Engine {
             Mode::ProtectiveStop | Mode::LatchedStop | Mode::Faulted => return Activity::Stopped,
             Mode::Following => {}
         }
+        if self.interactions.is_under_way() {
+            return Activity::Interacting;
+        }
         let Some(wish) = self.following.wish().filter(|_| !self.persons.iter().any(Person::is_unseen)) else {
             return Activity::Waiting;
         };
@@ -131,6 +137,7 @@ impl Engine {
             travel: &self.config.travel,
             threats: &[],
             parameters: &self.parameters,
+            contact: None,
         };
         // The measured velocity of a resting machine is noise; the zone shown is that of a meant motion.
         let state =

@@ -169,8 +169,7 @@ mod tests {
                     limits: &Limits::PAPER,
                     travel: &travel,
                     threats: &[threat],
-                    parameters: &parameters,
-                };
+                    parameters: &parameters, contact: None };
                 prop_assert_eq!(separation.certify(&State::moving(place, velocity)), Ok(()));
             }
         }

@@ -5,8 +5,9 @@
 //! moved within what the certificate allowed for.
 
 use crate::frames::{Floor, Planar};
-use crate::machine::Limits;
-use crate::safety::path::{AxisPath, BrakePath, State};
+use crate::machine::{AxisLimits, Limits};
+use crate::safety::contact::Contact;
+use crate::safety::path::{AxisPath, AxisState, BrakePath, State};
 use crate::safety::separation::{Conflict, Separation};
 use crate::safety::vetted::{Action, Setpoint, Vetted};
 use crate::time::{Span, Time};
@@ -67,6 +68,41 @@ impl Governor {
         Choice { taken: None, conflict: first_conflict }
     }
 
+    /// Move on by one period in a contact interaction (R14): the wanted velocity or less of it, no faster than the contact
+    /// may be and as gently as it must; else brake.
+    pub fn govern_contact(
+        &mut self,
+        wanted: Planar,
+        contact: &Contact,
+        measured: &State,
+        separation: &Separation<'_>,
+        period: Span,
+    ) -> Choice {
+        let mut first_conflict = separation.certify_measured(measured).err();
+        let fastest = contact.speed_mps(separation.parameters);
+        let gentle = contact.limits(separation.limits, separation.parameters);
+        let too_fast = self.commanded.velocity().norm() > fastest + ROUNDING_MPS;
+        if first_conflict.is_none() && !too_fast && !self.would_turn_about(&gentle) {
+            // Its axes each within the limit may be faster together than one of them: what is wanted leaves room for that.
+            let wanted = wanted.capped(CORNERING * fastest);
+            for (index, share) in CONTACT_SHARES.into_iter().enumerate() {
+                let next = self.towards(wanted * share, &gentle, period);
+                if next.velocity().norm() > fastest {
+                    continue;
+                }
+                match separation.certify(&next) {
+                    Ok(()) => {
+                        self.commanded = next;
+                        return Choice { taken: Some(index), conflict: first_conflict };
+                    }
+                    Err(conflict) => first_conflict = first_conflict.or(Some(conflict)),
+                }
+            }
+        }
+        self.brake(separation.limits, period);
+        Choice { taken: None, conflict: first_conflict }
+    }
+
     /// Brake along the path where that is certified, else at the limit of each axis.
     pub fn protective_brake(&mut self, separation: &Separation<'_>, period: Span) {
         let State { x, y } = self.commanded;
@@ -92,6 +128,11 @@ impl Governor {
         &self.commanded
     }
 
+    /// It is told to stand.
+    pub fn rests(&self) -> bool {
+        self.commanded.velocity().norm() < RESTS_MPS
+    }
+
     /// The command for it, valid for `valid_for`.
     pub fn command(&self, now: Time, valid_for: Span) -> Vetted {
         Vetted::new(
@@ -105,6 +146,14 @@ impl Governor {
         )
     }
 
+    /// A brake harder than this is under way, and eased off as gently as this it would end in motion the other way.
+    fn would_turn_about(&self, gentle: &Limits) -> bool {
+        let turns = |axis: AxisState, own: &AxisLimits| {
+            axis.v * axis.a < 0.0 && axis.a * axis.a > 2.0 * own.jerk_mps3 * axis.v.abs()
+        };
+        turns(self.commanded.x, &gentle.x) || turns(self.commanded.y, &gentle.y)
+    }
+
     fn towards(&self, velocity: Planar, limits: &Limits, period: Span) -> State {
         let cap = |v: f64, most: f64| v.clamp(-most, most);
         let State { x, y } = self.commanded;
@@ -115,6 +164,14 @@ impl Governor {
     }
 }
 
+/// Of what is wanted in a contact, the shares that are tried.
+const CONTACT_SHARES: [f64; 3] = [1.0, 0.5, 0.0];
+/// Of the greatest speed of a contact, what is wanted at most.
+const CORNERING: f64 = 0.95;
+/// Slower than this it is told to stand, m/s.
+const RESTS_MPS: f64 = 1e-3;
+/// Floating point, m/s.
+const ROUNDING_MPS: f64 = 1e-9;
 /// The slower axis keeps at least this share of its braking, so that both come to rest.
 const LEAST_SHARE: f64 = 0.1;
 
@@ -171,6 +228,7 @@ mod tests {
                 travel: &TRAVEL,
                 threats: &threats,
                 parameters: &parameters,
+                contact: None,
             };
             let mut governor = Governor::taking_over(Floor::new(2.0, 2.0));
             for proposals in wishes.iter().flat_map(|wish| std::iter::repeat_n(wish, 8)) {
@@ -229,6 +287,7 @@ mod tests {
                 travel: &TRAVEL,
                 threats: &[],
                 parameters: &parameters,
+                contact: None,
             };
             let v = Planar::new(v.x.clamp(-1.1, 1.1), v.y.clamp(-1.1, 1.1));
             let mut along = Governor { commanded: State::moving(Floor::new(2.0, 2.0), v) };

@@ -73,6 +73,26 @@ pub struct Parameters {
     /// A jog with people in the arena, m/s: reduced speed, 250 mm/s (ISO 10218-1, manual control), less what a turn adds while
     /// one axis still slows and the other goes already.
     pub reduced_speed_mps: f64,
+    /// R14: lead and transport, m/s.
+    pub contact_speed_mps: f64,
+    /// R14: brush, m/s.
+    pub brush_speed_mps: f64,
+    /// R14: how hard the column may pull at somebody's hand, and come up to a face, m/s2.
+    pub contact_acceleration_mps2: f64,
+    /// R14: see [`Self::contact_acceleration_mps2`], m/s3.
+    pub contact_jerk_mps3: f64,
+    /// R14: a rider is not to be thrown, m/s2: under what standing passengers of trains bear (0.9 to 1.5; Hoberock 1976).
+    pub ride_acceleration_mps2: f64,
+    /// R14: and for jerk, m/s3 (0.6 to 2 there).
+    pub ride_jerk_mps3: f64,
+    /// R14: from the head to everything of the column but the prop in contact, m.
+    pub contact_radius_m: f64,
+    /// R14: farther than this from the seat nobody sits on it, m.
+    pub aboard_m: f64,
+    /// R14: a pose in contact is not older.
+    pub contact_pose_age: Span,
+    /// R14: an arming of contact lasts no longer.
+    pub longest_contact: Span,
     /// Hold-to-run: an order to jog that is not given again for so long is over.
     pub hold_to_run: Span,
 }
@@ -113,6 +133,16 @@ impl Parameters {
             clears_after: Span::from_millis(1000),
             creep_speed_mps: 0.1,
             reduced_speed_mps: 0.24,
+            contact_speed_mps: 0.6,
+            brush_speed_mps: 0.3,
+            contact_acceleration_mps2: 0.5,
+            contact_jerk_mps3: 5.0,
+            ride_acceleration_mps2: 0.4,
+            ride_jerk_mps3: 1.0,
+            contact_radius_m: 0.35,
+            aboard_m: 0.6,
+            contact_pose_age: Span::from_millis(200),
+            longest_contact: Span::from_millis(300_000),
             hold_to_run: Span::from_millis(300),
         }
     }

@@ -17,6 +17,7 @@ mod terms;
 use crate::frames::{Floor, Planar};
 use crate::machine::{Limits, Travel};
 use crate::observation::PersonId;
+use crate::safety::contact::{Contact, ContactKind};
 use crate::safety::parameters::Parameters;
 use crate::safety::path::{BrakePath, State};
 use crate::scene::Scene;
@@ -94,6 +95,8 @@ pub struct Separation<'a> {
     pub threats: &'a [Threat],
     /// The rule's numbers.
     pub parameters: &'a Parameters,
+    /// The visitor whom R14 stands for instead.
+    pub contact: Option<Contact>,
 }
 
 impl Separation<'_> {
@@ -159,6 +162,10 @@ impl Separation<'_> {
             return Ok(());
         }
         for threat in self.threats {
+            if let Some(contact) = self.contact.filter(|contact| contact.person == threat.person) {
+                self.certify_contact(&contact, threat, velocity, path, allowance_m)?;
+                continue;
+            }
             let r = self.radius_m(threat, speed_mps);
             let required = |s: f64| r + self.parameters.v_h_mps * (threat.age_secs + s) + allowance_m;
             let distance = |c: Floor| self.scene.footprint().distance_m(c, threat.head);
@@ -182,6 +189,56 @@ impl Separation<'_> {
             }
         }
         Ok(())
+    }
+
+    /// R14, for the visitor of a contact interaction.
+    fn certify_contact(
+        &self,
+        contact: &Contact,
+        threat: &Threat,
+        velocity: Planar,
+        path: &BrakePath,
+        allowance_m: f64,
+    ) -> Result<(), Conflict> {
+        let p = self.parameters;
+        let refuse = |distance_m, required_m| {
+            Err(Conflict { with: Obstacle::Person(threat.person), distance_m, required_m })
+        };
+        let centre = path.centre(0.0);
+        if threat.age_secs > p.contact_pose_age.secs() {
+            return refuse(0.0, p.contact_radius_m);
+        }
+        if contact.kind == ContactKind::Transport {
+            let off_m = (centre + contact.offset).distance_m(threat.head);
+            return if contact.is_aboard(centre, threat.head, p) {
+                Ok(())
+            } else {
+                refuse(off_m, p.aboard_m)
+            };
+        }
+        let footprint = self.scene.footprint();
+        let distance = |c: Floor| footprint.distance_but_m(c, threat.head, contact.prop);
+        match keeps(path, 0.0, distance, |_| p.contact_radius_m + allowance_m) {
+            Ok(()) => Ok(()),
+            // A leader leaves behind whoever came too near, as long as it does not come any nearer.
+            Err(_) if velocity.dot(centre - threat.head) > 0.0 && self.is_left_behind(path, &distance) => {
+                Ok(())
+            }
+            Err((distance_m, required_m)) => refuse(distance_m, required_m),
+        }
+    }
+
+    /// The distance never falls on the way to rest, and the column is not upon the head.
+    fn is_left_behind(&self, path: &BrakePath, distance: &impl Fn(Floor) -> f64) -> bool {
+        let end = path.duration_secs();
+        let looks =
+            (0..=LEAVING_LOOKS).map(|k| distance(path.centre(end * f64::from(k) / f64::from(LEAVING_LOOKS))));
+        let (mut before, mut falls) = (self.parameters.near_radius_m, false);
+        for now in looks {
+            falls |= now < before - ROUNDING_M;
+            before = now;
+        }
+        !falls
     }
 
     /// Slowly and straight away.
@@ -226,6 +283,8 @@ const MEASUREMENT_NOISE_MPS: f64 = 0.02;
 const AT_REST_MPS: f64 = 1e-6;
 /// Shortest look-ahead step; at 3 m/s of closing speed less than a millimetre passes unseen.
 const LEAST_STEP_SECS: f64 = 2.5e-4;
+/// Looks at a way that leaves somebody behind.
+const LEAVING_LOOKS: u32 = 16;
 /// Floating point on a path that ends on the margin, m.
 const ROUNDING_M: f64 = 1e-9;
 #[cfg(test)]
@@ -274,6 +333,7 @@ mod tests {
             travel: &TRAVEL,
             threats,
             parameters: &parameters,
+            contact: None,
         }
         .certify(state)
     }

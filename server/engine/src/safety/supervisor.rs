@@ -8,7 +8,7 @@
 use crate::event::EventKind;
 use crate::frames::Floor;
 use crate::machine::{Homing, MachineReport, Travel};
-use crate::observation::InputLevel;
+use crate::observation::{InputLevel, PersonId};
 use crate::person::{Lost, Person};
 use crate::reason::Reason;
 use crate::safety::parameters::Parameters;
@@ -101,7 +101,7 @@ impl Supervisor {
             reason: match n {
                 4 => Reason::StopNotPressed,
                 11 => Reason::GameMasterNotNeeded,
-                14 => Reason::NotWatched,
+                14 => Reason::ContactNotArmed,
                 12 => Reason::NoIntruderInput,
                 _ => Reason::NothingToWatch,
             },
@@ -173,6 +173,24 @@ impl Supervisor {
         for rule in [3, 13] {
             self.set(RuleId(rule), RuleStatus::Idle, now, events, || Reason::NothingToWatch);
         }
+    }
+
+    /// Whom a contact is armed for, and which contact is under way (R14).
+    pub fn contact(
+        &mut self,
+        armed: Option<PersonId>,
+        under_way: Option<&'static str>,
+        now: Time,
+        events: &mut Vec<EventKind>,
+    ) {
+        let (status, reason) = match (armed, under_way) {
+            (Some(person), Some(interaction)) => {
+                (RuleStatus::Limiting, Reason::InContact { person, interaction: interaction.to_owned() })
+            }
+            (Some(person), None) => (RuleStatus::Clear, Reason::ContactArmed(person)),
+            (None, _) => (RuleStatus::Idle, Reason::ContactNotArmed),
+        };
+        self.set(RuleId(14), status, now, events, || reason);
     }
 
     /// The software stop was pressed, for this reason, or reset (R4).

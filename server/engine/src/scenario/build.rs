@@ -108,10 +108,13 @@ impl Builder<'_> {
                 priors[object] = Some(*prior);
             }
         }
+        let mut interactions = vec![None; objects];
         for (id, interaction) in &state.interactions {
             let path = format!("{at}.interactions.{id}");
-            self.object(&path, id);
-            self.interaction(path, *interaction);
+            if let Some(object) = self.object(&path, id) {
+                interactions[object] = Some(interaction.clone());
+            }
+            self.interaction(&path, interaction);
         }
         let entry = self.acts(&format!("{at}.entry"), &state.entry);
         let transitions = self.transitions(&format!("{at}.transitions"), &state.transitions);
@@ -119,7 +122,15 @@ impl Builder<'_> {
             let found = format!("{} transitions", transitions.len());
             self.add(format!("{at}.transitions"), found, "none: the scenario ends in a final state");
         }
-        State { id: state.id.as_str().into(), enabled, priors, entry, transitions, is_final: state.is_final }
+        State {
+            id: state.id.as_str().into(),
+            enabled,
+            priors,
+            interactions,
+            entry,
+            transitions,
+            is_final: state.is_final,
+        }
     }
 
     fn prior(&mut self, at: &str, prior: &Prior) {
@@ -139,20 +150,41 @@ impl Builder<'_> {
         }
     }
 
-    fn interaction(&mut self, path: String, interaction: Interaction) {
-        if !interaction.is_built() {
-            let built = Interaction::ALL
-                .into_iter()
-                .filter(|known| known.is_built())
-                .map(|known| quoted(known.name()));
-            let built = built.collect::<Vec<_>>().join(", ");
-            let expected = if built.is_empty() {
-                "nothing: this version has no interactions; without one the column stands in for the object"
-                    .to_owned()
-            } else {
-                format!("an interaction that this version has: {built}")
-            };
-            self.add(path, format!("{}, which this version cannot do", quoted(interaction.name())), expected);
+    fn interaction(&mut self, at: &str, interaction: &Interaction) {
+        match interaction {
+            Interaction::Hold | Interaction::Park => {}
+            Interaction::StepBack { distance_m } => {
+                self.range(format!("{at}.distance"), *distance_m, LEAST_STEP_BACK_M, MOST_STEP_BACK_M, "m");
+            }
+            Interaction::Lead(course) | Interaction::Transport(course) => {
+                self.count(&format!("{at}.path"), course.path.len(), 1, MOST_PATH_PLACES);
+                for (i, place) in course.path.iter().enumerate() {
+                    if !place.is_finite() {
+                        self.add(
+                            format!("{at}.path[{i}]"),
+                            "a coordinate that is not finite",
+                            "finite metres",
+                        );
+                    }
+                }
+                self.range(
+                    format!("{at}.speed"),
+                    course.speed_mps,
+                    LEAST_SPEED_MPS,
+                    MOST_COURSE_MPS,
+                    "m/s (R14)",
+                );
+            }
+            Interaction::Brush { speed_mps, secs } => {
+                self.range(format!("{at}.speed"), *speed_mps, LEAST_SPEED_MPS, MOST_BRUSH_MPS, "m/s (R14)");
+                self.range(format!("{at}.secs"), *secs, 0.0, MOST_BRUSH_SECS, "s");
+            }
+        }
+    }
+
+    fn range(&mut self, at: String, found: f64, least: f64, most: f64, unit: &str) {
+        if !(least..=most).contains(&found) {
+            self.add(at, found, format!("a number from {least} to {most} {unit}"));
         }
     }
 
@@ -190,6 +222,9 @@ impl Builder<'_> {
             }
             Trigger::TouchEnded(id) => {
                 Trigger::TouchEnded(self.object(&format!("{at}.object"), id).unwrap_or(0))
+            }
+            Trigger::InteractionDone(id) => {
+                Trigger::InteractionDone(self.object(&format!("{at}.object"), id).unwrap_or(0))
             }
             Trigger::ZoneEntered(id) => Trigger::ZoneEntered(self.zone(&format!("{at}.zone"), id)),
             Trigger::ZoneLeft(id) => Trigger::ZoneLeft(self.zone(&format!("{at}.zone"), id)),
@@ -401,3 +436,16 @@ const MOST_ACTS: usize = 20;
 const MOST_VARIABLES: usize = 32;
 /// Ids that a problem lists.
 const MOST_NAMED: usize = 10;
+/// Places of a path.
+const MOST_PATH_PLACES: usize = 100;
+/// A step back, m.
+const LEAST_STEP_BACK_M: f64 = 0.05;
+const MOST_STEP_BACK_M: f64 = 3.0;
+/// Slower than this is no motion that anybody means, m/s.
+const LEAST_SPEED_MPS: f64 = 0.05;
+/// R14, m/s: lead and transport.
+const MOST_COURSE_MPS: f64 = 0.6;
+/// R14, m/s: brush.
+const MOST_BRUSH_MPS: f64 = 0.3;
+/// A brush lasts no longer, s.
+const MOST_BRUSH_SECS: f64 = 10.0;

@@ -24,6 +24,8 @@ pub struct Play {
     senses: Senses,
     /// States entered in this run, with the variables before each; the last is the present one.
     entries: Vec<(usize, Vec<i64>)>,
+    /// Counts the states entered, over all runs.
+    stay: u64,
     /// Eventless transitions wait for something to happen: they went in a circle.
     is_cut: bool,
     /// Where the last run ended, if it got beyond its beginning.
@@ -113,6 +115,7 @@ impl Play {
             touches: vec![0; objects],
             senses: Senses::default(),
             entries: Vec::new(),
+            stay: 0,
             is_cut: false,
             left_in: None,
         };
@@ -144,6 +147,16 @@ impl Play {
     /// What is known of people and column, for whoever looks at them.
     pub fn senses_mut(&mut self) -> &mut Senses {
         &mut self.senses
+    }
+
+    /// What is known of people and column.
+    pub fn senses(&self) -> &Senses {
+        &self.senses
+    }
+
+    /// The number of this stay in a state: whoever remembers something of a state knows by it that it was left, also for itself.
+    pub fn stay(&self) -> u64 {
+        self.stay
     }
 
     /// The scenario's clock.
@@ -305,6 +318,7 @@ impl Play {
         self.state = to;
         self.entered_at = self.clock;
         self.touches.fill(0);
+        self.stay += 1;
         self.is_cut = false;
         scenario.states[to].entry.iter().for_each(|act| self.act(act));
     }

@@ -86,6 +86,11 @@ impl Senses {
         since(&self.touches, object)
     }
 
+    /// Everybody who touches an object.
+    pub fn touching(&self, object: usize) -> impl Iterator<Item = PersonId> {
+        self.touches.iter().filter(move |touch| touch.object == object).map(|touch| touch.person)
+    }
+
     /// Since when somebody looks at an object: the longest of all looks.
     pub fn looked_at_since(&self, object: usize) -> Option<Span> {
         since(&self.looks, object)

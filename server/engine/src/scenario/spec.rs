@@ -1,4 +1,7 @@
-//! A scenario as described: plain data, not yet checked. References are ids; times are seconds.
+//! A scenario as described: plain data, not yet checked. References are ids; times are seconds, lengths metres, places in the room
+//! frame.
+
+use crate::frames::Floor;
 
 /// A scenario as described, not yet checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,21 +69,38 @@ pub struct Prior {
     pub most: f64,
 }
 
-/// What the column does at an object while it is touched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What the column does at an object, in one state; what each does is said in `interaction`.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Interaction {
     /// Keeps its position under load.
     Hold,
     /// Gives way after being pushed.
-    StepBack,
+    StepBack {
+        /// How far, against the way that its prop faces, m.
+        distance_m: f64,
+    },
     /// Pulls along a path.
-    Lead,
+    Lead(Course),
     /// Carries along a path.
-    Transport,
+    Transport(Course),
     /// Comes up to a still person and leaves.
-    Brush,
+    Brush {
+        /// No faster than this, m/s.
+        speed_mps: f64,
+        /// It stays at the person for so long, s.
+        secs: f64,
+    },
     /// Keeps out of reach.
     Park,
+}
+
+/// A path that somebody is led or carried along, from where the object is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Course {
+    /// The places of the object on the floor, one after another, the first after its own.
+    pub path: Vec<Floor>,
+    /// No faster than this, m/s.
+    pub speed_mps: f64,
 }
 
 /// A way from a state, in terms of `R`: ids as described, indices once built.
@@ -107,6 +127,8 @@ pub enum Trigger<R> {
     ZoneEntered(R),
     /// Somebody went out of the zone.
     ZoneLeft(R),
+    /// What the column does at the object came to its end.
+    InteractionDone(R),
     /// A VR client said this name.
     ClientEvent(R),
     /// The game master gave this cue.
@@ -228,27 +250,23 @@ impl std::fmt::Display for Value {
 }
 
 impl Interaction {
-    /// Every interaction.
-    pub const ALL: [Self; 6] =
-        [Self::Hold, Self::StepBack, Self::Lead, Self::Transport, Self::Brush, Self::Park];
-
     /// Its name in JSON.
-    pub const fn name(self) -> &'static str {
+    pub const fn name(&self) -> &'static str {
         match self {
             Self::Hold => "hold",
-            Self::StepBack => "step_back",
-            Self::Lead => "lead",
-            Self::Transport => "transport",
-            Self::Brush => "brush",
+            Self::StepBack { .. } => "step_back",
+            Self::Lead(_) => "lead",
+            Self::Transport(_) => "transport",
+            Self::Brush { .. } => "brush",
             Self::Park => "park",
         }
     }
 
-    /// The engine can do it. None can be done yet: the column stands in for an object and no more. Whoever builds one says so
-    /// here, and scenes may ask for it.
-    pub const fn is_built(self) -> bool {
+    /// The path, where it has one.
+    pub const fn course(&self) -> Option<&Course> {
         match self {
-            Self::Hold | Self::StepBack | Self::Lead | Self::Transport | Self::Brush | Self::Park => false,
+            Self::Lead(course) | Self::Transport(course) => Some(course),
+            Self::Hold | Self::StepBack { .. } | Self::Brush { .. } | Self::Park => None,
         }
     }
 }

@@ -30,6 +30,7 @@ fn way(on: &[Trigger<&str>], when: Option<Condition<String>>, to: &str) -> Trans
         Trigger::ZoneEntered(id) => Trigger::ZoneEntered(id.to_owned()),
         Trigger::ZoneLeft(id) => Trigger::ZoneLeft(id.to_owned()),
         Trigger::ClientEvent(id) => Trigger::ClientEvent(id.to_owned()),
+        Trigger::InteractionDone(id) => Trigger::InteractionDone(id.to_owned()),
         Trigger::Cue(id) => Trigger::Cue(id.to_owned()),
     };
     Transition { on: on.iter().map(owned).collect(), when, to: Some(to.into()), acts: Vec::new() }
@@ -228,7 +229,7 @@ fn references_kinds_and_ranges_are_all_reported_at_their_place() {
     spec.variables = vec![VariableSpec { id: "yes".into(), start: Value::Boolean(true) }];
     spec.states[0].enabled = vec!["bulb".into(), "bulb".into()];
     spec.states[0].priors = vec![("left".into(), Prior::constant(1.5))];
-    spec.states[0].interactions = vec![("bulb".into(), Interaction::Hold)];
+    spec.states[0].interactions = vec![("bulb".into(), Interaction::StepBack { distance_m: 9.0 })];
     spec.states[0].entry = vec![Act::Add { variable: "yes".into(), amount: 1 }];
     spec.anywhere = vec![way(&[Trigger::Cue("x")], Some(compare("yes", Comparison::Less, 3)), "a")];
     spec.states[1].is_final = true;
@@ -241,7 +242,7 @@ fn references_kinds_and_ranges_are_all_reported_at_their_place() {
             "states[0].priors.left.value: 1.5",
             "states[0].priors.left: 0 to 1 with a value of 1.5",
             "states[0].priors.left: a prior of an object that is not enabled here",
-            "states[0].interactions.bulb: \"hold\", which this version cannot do",
+            "states[0].interactions.bulb.distance: 9",
             "states[0].entry[0].variable: \"yes\"",
             "states[0].transitions[0].on[0].object: \"nobody\"",
             "states[0].transitions[0].when.zone: \"nowhere\"",

@@ -9,6 +9,8 @@ use crate::frames::{Floor, Planar};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Footprint {
     rectangles: Vec<Rectangle>,
+    /// The prop that each rectangle is of; none: the column itself.
+    props: Vec<Option<usize>>,
 }
 
 /// A rectangle along the room's axes, relative to the column's centre, m.
@@ -39,9 +41,12 @@ impl Footprint {
     pub fn new(column_size_m: Planar, props: &[PropSpec]) -> Self {
         let about =
             |centre: Planar, size: Planar| Rectangle { min: centre - size * 0.5, max: centre + size * 0.5 };
-        let mut rectangles = vec![about(Planar::ZERO, column_size_m)];
-        rectangles.extend(props.iter().filter(|p| p.size_m.norm() > 0.0).map(|p| about(p.offset, p.size_m)));
-        Self { rectangles }
+        let taking_floor = || props.iter().enumerate().filter(|(_, p)| p.size_m.norm() > 0.0);
+        let rectangles = std::iter::once(about(Planar::ZERO, column_size_m))
+            .chain(taking_floor().map(|(_, p)| about(p.offset, p.size_m)))
+            .collect();
+        let props = std::iter::once(None).chain(taking_floor().map(|(i, _)| Some(i))).collect();
+        Self { rectangles, props }
     }
 
     /// The rectangles.
@@ -52,6 +57,13 @@ impl Footprint {
     /// From `point` to the nearest point of the footprint with the column's centre at `centre`, m; 0 inside.
     pub fn distance_m(&self, centre: Floor, point: Floor) -> f64 {
         self.rectangles.iter().map(|r| r.gap(point - centre).norm()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same, but for the rectangle of one prop; of the column itself nothing is left out.
+    pub fn distance_but_m(&self, centre: Floor, point: Floor, prop: Option<usize>) -> f64 {
+        let of_others =
+            self.rectangles.iter().zip(&self.props).filter(|(_, of)| of.is_none() || **of != prop);
+        of_others.map(|(r, _)| r.gap(point - centre).norm()).fold(f64::INFINITY, f64::min)
     }
 
     /// From the nearest point of the footprint away from `point` as a unit vector; none inside.

@@ -43,7 +43,7 @@ impl Driven {
                 head: footing.head,
                 height_m: footing.height_m,
                 to_enabled_object_m: footing.to_object_m,
-                contact_armed: false,
+                contact: None,
             };
             checker.check(&Moment {
                 at: Time::ZERO + Span::from_micros(tick as i64 * TICK.micros()),

@@ -317,7 +317,7 @@ impl Scales {
 
 fn sightings<'a>(rules: &'a Rules, moment: &Moment<'_>) -> Vec<Sighting<'a>> {
     let centre = moment.column.position;
-    let persons = moment.persons.iter().filter(|person| !person.contact_armed).map(|person| {
+    let persons = moment.persons.iter().filter(|person| person.contact.is_none()).map(|person| {
         let head = person.head;
         Sighting {
             subject: Subject::Person(person.id),

@@ -25,6 +25,8 @@ pub struct Verdict {
     pub acceleration: u64,
     /// Ticks and axes over the jerk limit.
     pub jerk: u64,
+    /// Ticks that broke a limit of a contact interaction (R14).
+    pub contact: u64,
     /// Not violations: moving ticks excused because r had just grown or the person had just appeared.
     pub excused_growth: u64,
     /// Not violations: moving ticks too near to a person who was faster than v_h, the column braking.
@@ -99,12 +101,21 @@ pub enum Breach {
         /// The limit, SI.
         limit: f64,
     },
+    /// In a contact interaction (R14).
+    Contact {
+        /// What, with its unit.
+        what: &'static str,
+        /// What it was.
+        found: f64,
+        /// What it may be.
+        limit: f64,
+    },
 }
 
 impl Verdict {
     /// Broken rules of every kind.
     pub fn violations(&self) -> u64 {
-        self.separation + self.travel() + self.speed + self.acceleration + self.jerk
+        self.separation + self.contact + self.travel() + self.speed + self.acceleration + self.jerk
     }
 
     /// Broken travel rules.
@@ -145,6 +156,9 @@ impl fmt::Display for Violation {
                 write!(f, "axis {axis:?} would rest at {rests_at_m:.4} m, allowed {allowed_m:?} m")
             }
             Breach::TravelOutside { depth_m } => write!(f, "outside the travel by {:.4} m", -depth_m),
+            Breach::Contact { what, found, limit } => {
+                write!(f, "in contact, {what}: {found:.4}, limit {limit}")
+            }
             Breach::Limit { axis, quantity, found, limit } => {
                 write!(f, "axis {axis:?} {quantity:?} {found:.5} over its limit {limit}")
             }

@@ -10,6 +10,7 @@ use covr_engine::scene::SceneSpec;
 use covr_engine::time::{Span, Time};
 use nalgebra::UnitQuaternion;
 
+use super::playmate::Lure;
 use super::world::somewhere;
 
 /// One of them.
@@ -39,6 +40,8 @@ pub struct Surroundings<'a> {
     pub column: Floor,
     pub column_velocity: Planar,
     pub scene: &'a SceneSpec,
+    /// Somebody goes there, whatever they would do else.
+    pub lure: Option<Lure>,
 }
 
 /// What a step of a person brings.
@@ -199,7 +202,12 @@ impl Adversary {
     fn walk(&mut self, around: &Surroundings<'_>) {
         let here = self.head.floor();
         let towards = |to: Floor| (to - here).unit().unwrap_or(Planar::ZERO);
+        let lured = around.lure.filter(|lure| lure.person.is_none_or(|person| person == self.id));
         let velocity = match self.act {
+            _ if let Some(lure) = lured => {
+                let way = lure.place - here;
+                way.capped(around.v_h_mps * around.period.secs()) * (1.0 / around.period.secs())
+            }
             Act::Stand => Planar::ZERO,
             Act::Charge { speed } => towards(around.column) * speed,
             Act::Intercept { speed } => towards(around.column + around.column_velocity * 0.5) * speed,

@@ -12,6 +12,7 @@ use super::adversary::{Adversary, Surroundings};
 use super::faults::Nuisance;
 use super::inputs::Sensors;
 use super::operator::Operator;
+use super::playmate::Playmate;
 use super::world::World;
 use crate::checker::Verdict;
 use crate::random::Random;
@@ -39,6 +40,8 @@ pub enum Part {
     Operator,
     /// Faults of the link to the machine and of the control thread.
     Faults,
+    /// Scenarios with interactions, the hands on them and the contacts armed.
+    Scenario,
     /// Digital inputs that become active or fall silent.
     Inputs,
 }
@@ -60,6 +63,8 @@ pub struct Proof {
     pub moved_while_input: u64,
     /// Steps in the mode `following`.
     pub following: u64,
+    /// Steps in which the column moved in contact with somebody.
+    pub in_contact: u64,
     /// The first step after which a violation was found.
     pub violated_at: Option<u64>,
     /// Every command, and every snapshot that was asked for, in one number.
@@ -76,10 +81,12 @@ impl Proof {
 /// Run a case; a snapshot goes into the digest every `snapshot_every` steps. In words what could not even begin.
 pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
     let mut random = Random::seeded(case.seed);
-    let mut world = World::random(&mut random, case.v_h_mps)
+    let is_left_out = |part| case.without.contains(&part);
+    // Of a stream of its own: the rest of a world is the same without it.
+    let mut playing = Some(Random::seeded(case.seed ^ PLAYING)).filter(|_| !is_left_out(Part::Scenario));
+    let mut world = World::random(&mut random, playing.as_mut(), case.v_h_mps)
         .map_err(|problem| format!("seed {}: {problem}", case.seed))?;
     let told = std::mem::take(&mut world.told);
-    let is_left_out = |part| case.without.contains(&part);
     let control = &mut world.control;
     if let Err(mode) = control.bring_up(Span::from_millis(120_000)) {
         return Err(format!("seed {}: the machine stuck in {}: {told}", case.seed, mode.name()));
@@ -96,6 +103,8 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
         Operator::new(random.fork(), std::mem::take(&mut world.scenes), now, !is_left_out(Part::Operator));
     let mut nuisance = if is_left_out(Part::Faults) { None } else { Some(Nuisance::new(random.fork(), now)) };
     let mut sensors = if is_left_out(Part::Inputs) { None } else { Some(Sensors::new(random.fork(), now)) };
+    let mut playmate = playing.map(|random| Playmate::new(random, now));
+    let mut in_contact = 0;
     let mut moved_while_input = 0;
     let mut digest = DefaultHasher::new();
     let mut following = 0;
@@ -104,6 +113,7 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
     let mut heads: Vec<TrueHead> = Vec::new();
     for step in 0..case.steps {
         let now = control.now();
+        let lure = playmate.as_mut().and_then(|playmate| playmate.step(control, &heads, column.0));
         heads.clear();
         let scene = Arc::clone(control.engine().scene());
         let around = Surroundings {
@@ -115,6 +125,7 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
             column: column.0,
             column_velocity: column.1,
             scene: scene.spec(),
+            lure,
         };
         for person in &mut everybody {
             let doings = person.step(&around);
@@ -141,6 +152,8 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
         column = (truth.position, truth.velocity);
         let must_rest = sensors.as_ref().is_some_and(|sensors| sensors.demand_rest(now));
         moved_while_input += u64::from(must_rest && truth.velocity.norm() > AT_REST_MPS);
+        let moves = truth.velocity.norm() > AT_REST_MPS;
+        in_contact += u64::from(moves && control.engine().contact().is_some());
         following += u64::from(control.engine().mode() == Mode::Following);
         if step % snapshot_every == 0 {
             format!("{:?}", control.engine().snapshot(now)).hash(&mut digest);
@@ -165,6 +178,7 @@ pub fn run(case: &Case, snapshot_every: u64) -> Result<Proof, String> {
         commanded: control.commanded_verdict().clone(),
         moved_while_input,
         following,
+        in_contact,
         violated_at,
         digest: digest.finish(),
     })
@@ -192,5 +206,7 @@ fn remember(digest: &mut DefaultHasher, stepped: &Stepped) {
     }
 }
 
+/// Tells the stream of interactions from that of the world.
+const PLAYING: u64 = 0x5eed_0000_9a7e;
 /// Slower than this the column rests, m/s.
 const AT_REST_MPS: f64 = 0.02;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::playmate;
 use crate::random::Random;
 use crate::replay::{ClosedLoop, LinkProfile};
 use covr_engine::EngineConfig;
@@ -35,7 +36,13 @@ pub struct World {
 
 impl World {
     /// The world of this stream of random numbers; v_h is drawn when none is given.
-    pub fn random(random: &mut Random, v_h_mps: Option<f64>) -> Result<Self, ParameterProblem> {
+    ///
+    /// With `playing` its scenes bring scenarios, drawn from that stream.
+    pub fn random(
+        random: &mut Random,
+        mut playing: Option<&mut Random>,
+        v_h_mps: Option<f64>,
+    ) -> Result<Self, ParameterProblem> {
         let arena = Travel {
             min: Floor::new(0.0, 0.0),
             max: Floor::new(random.between(3.0, 6.0), random.between(3.0, 6.0)),
@@ -43,7 +50,8 @@ impl World {
         let travel = arena.shrunk(random.between(0.05, 0.3));
         let drawn_mps = if random.chance(0.8) { 1.6 } else { 2.0 };
         let v_h_mps = v_h_mps.unwrap_or(drawn_mps);
-        let scenes: Vec<_> = (0..3).map(|_| Arc::new(scene(random, arena, travel))).collect();
+        let scenes: Vec<_> =
+            (0..3).map(|_| Arc::new(scene(random, playing.as_deref_mut(), arena, travel))).collect();
         let ideal = random.chance(0.4);
         let machine: Box<dyn Simulated> = if ideal {
             let limits = Limits { x: axis(random), y: axis(random) };
@@ -104,10 +112,12 @@ fn axis(random: &mut Random) -> AxisLimits {
     }
 }
 
-fn scene(random: &mut Random, arena: Travel, travel: Travel) -> Scene {
+fn scene(random: &mut Random, mut playing: Option<&mut Random>, arena: Travel, travel: Travel) -> Scene {
     loop {
         // A random scene may be impossible (props too wide, an object out of reach): draw again.
-        if let Ok(scene) = Scene::build(spec(random, arena, travel)) {
+        let mut spec = spec(random, arena, travel);
+        spec.scenario = playing.as_deref_mut().map(|playing| playmate::scenario(playing, &spec));
+        if let Ok(scene) = Scene::build(spec) {
             return scene;
         }
     }

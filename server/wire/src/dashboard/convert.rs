@@ -8,13 +8,14 @@ use covr_engine::mode::{Mode as EngineMode, RequestKind};
 use covr_engine::observation::PersonId;
 use covr_engine::safety::separation::{Term, Terms};
 use covr_engine::snapshot::{self as engine, RuleId};
+use covr_engine::time::Span;
 use covr_engine::{Outcome as EngineOutcome, Request};
 
 use super::event::rule_title;
 use super::{
-    Activity, Client, Column, ControlLoop, MachineHealth, MachineRequest, MachineShape, Mode, NextState,
-    Object, Outcome, Person, RequestState, RuleState, RuleStatus, Scenario, SeparationTerm, SeparationTerms,
-    Snapshot, StopCause, ToDashboard,
+    Activity, Client, Column, Contact, ControlLoop, Interaction, MachineHealth, MachineRequest, MachineShape,
+    Mode, NextState, Object, Outcome, Person, RequestState, RuleState, RuleStatus, Scenario, SeparationTerm,
+    SeparationTerms, Snapshot, StopCause, ToDashboard,
 };
 use crate::reason::{self, Reason};
 
@@ -60,6 +61,17 @@ impl Snapshot {
             persons: state.persons.iter().map(|person| self::person(person, around.names)).collect(),
             objects: state.objects.iter().map(Into::into).collect(),
             scenario: state.scenario.as_ref().map(Into::into),
+            interaction: state.interaction.as_ref().map(|interaction| Interaction {
+                object: state.objects.get(interaction.object).map_or_else(String::new, |o| o.id.clone()),
+                interaction: interaction.interaction.into(),
+                phase: interaction.phase.into(),
+                person: interaction.person.map(|person| person.0),
+                lasted_secs: interaction.lasted_secs,
+            }),
+            contact: state
+                .contact
+                .map(|contact| Contact { person: contact.person.0, left_secs: contact.left_secs }),
+            bears: state.bears.map(|person| person.0),
             intention_rule: state.intention_rule.into(),
             standing: state.standing.into(),
             motion: state.motion.into(),
@@ -87,6 +99,11 @@ impl MachineRequest {
             Self::Cue(name) => Request::Cue(name.clone()),
             Self::SkipTo(state) => Request::SkipTo(state.clone(), reason.unwrap_or_default()),
             Self::Rewind => Request::Rewind(reason.unwrap_or_default()),
+            Self::ArmContact { person, secs } => {
+                Request::ArmContact(PersonId(*person), Span::from_secs(*secs))
+            }
+            Self::DisarmContact => Request::DisarmContact,
+            Self::ConfirmFree => Request::ConfirmFree,
         }
     }
 }
@@ -276,6 +293,7 @@ impl From<engine::Activity> for Activity {
             engine::Activity::Yielding => Self::Yielding,
             engine::Activity::Blocked => Self::Blocked,
             engine::Activity::InPlace => Self::InPlace,
+            engine::Activity::Interacting => Self::Interacting,
             engine::Activity::Stopped => Self::Stopped,
         }
     }

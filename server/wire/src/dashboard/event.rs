@@ -19,6 +19,8 @@ impl Event {
         objects: &[String],
     ) -> Self {
         let who = |person: &PersonId| name_of(*person, names);
+        let object_name =
+            |object: usize| objects.get(object).map_or_else(|| format!("object {object}"), Clone::clone);
         let (kind, summary, detail) = match &event.kind {
             EventKind::ModeChanged { from, to, rule, because } => {
                 let why = Reason::new(because, names);
@@ -54,10 +56,9 @@ impl Event {
             ),
             EventKind::Served { person, object } => {
                 let id = objects.get(*object);
-                let object_name = id.map_or_else(|| format!("object {object}"), Clone::clone);
                 (
                     "served",
-                    format!("the column stands at {object_name} for {}", who(person)),
+                    format!("the column stands at {} for {}", object_name(*object), who(person)),
                     json!({"person": person.0, "name": who(person), "object": id}),
                 )
             }
@@ -90,6 +91,32 @@ impl Event {
                     json!({"at_m": [at.x, at.y], "why": why}),
                 )
             }
+            EventKind::InteractionBegan { object, interaction, person } => {
+                let id = objects.get(*object);
+                let with = person.as_ref().map(|person| format!(" with {}", who(person))).unwrap_or_default();
+                (
+                    "interaction_began",
+                    format!("{} at {}{with}", interaction.replace('_', " "), object_name(*object)),
+                    json!({"interaction": interaction, "object": id, "person": person.map(|p| p.0), "name": person.as_ref().map(who)}),
+                )
+            }
+            EventKind::InteractionEnded { object, interaction, person, because } => {
+                let why = Reason::new(because, names);
+                let id = objects.get(*object);
+                (
+                    "interaction_ended",
+                    format!("{} at {} is over: {why}", interaction.replace('_', " "), object_name(*object)),
+                    json!({"interaction": interaction, "object": id, "person": person.map(|p| p.0), "name": person.as_ref().map(who), "why": why}),
+                )
+            }
+            EventKind::ContactOver { person, because } => {
+                let why = Reason::new(because, names);
+                (
+                    "contact_over",
+                    format!("contact is armed for {} no more: {why}", who(person)),
+                    json!({"person": person.0, "name": who(person), "why": why}),
+                )
+            }
             EventKind::StateEntered { from, to, why } => {
                 let (words, mut detail) = why_state(why, &who);
                 detail["state"] = (&**to).into();
@@ -119,6 +146,10 @@ fn why_state(why: &WhyState, who: &impl Fn(&PersonId) -> String) -> (String, Val
         WhyState::TouchEnded(person, id) => somebody(person, "let go of", "touch_ended", "object", id),
         WhyState::ZoneEntered(person, id) => somebody(person, "entered", "zone_entered", "zone", id),
         WhyState::ZoneLeft(person, id) => somebody(person, "left", "zone_left", "zone", id),
+        WhyState::InteractionDone(id) => (
+            format!("what the column does at {id} came to its end"),
+            json!({"by": "interaction_done", "object": id}),
+        ),
         WhyState::ClientEvent(name) => {
             (format!("the VR client said {name}"), json!({"by": "client_event", "event": name}))
         }

@@ -38,6 +38,16 @@ pub struct Snapshot {
     pub objects: Vec<Object>,
     /// The scenario; null where the active scene has none.
     pub scenario: Option<Scenario>,
+    /// The interaction under way; null: none.
+    #[serde(default)]
+    pub interaction: Option<Interaction>,
+    /// For whom a contact is armed (R14); null: nobody.
+    #[serde(default)]
+    pub contact: Option<Contact>,
+    /// Who leans on the column or rides it, as far as is known: a stop keeps the drive on until they let go, or until a game master says
+    /// that nobody does (`confirm_free`); null: nobody.
+    #[serde(default)]
+    pub bears: Option<u32>,
     /// The intention rule in use.
     pub intention_rule: String,
     /// Where the column stands while it is not plain what will be touched, by name.
@@ -191,6 +201,8 @@ pub enum Activity {
     Blocked,
     /// It stands where it is wanted.
     InPlace,
+    /// An interaction is under way.
+    Interacting,
     /// Stopped, or braking for a stop.
     Stopped,
 }
@@ -285,6 +297,30 @@ pub struct Object {
     pub angle_rad: Option<f64>,
     /// From the visitor's head to its surface, m; null without a visitor.
     pub distance_m: Option<f64>,
+}
+
+/// The interaction under way.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct Interaction {
+    /// Id of its object.
+    pub object: String,
+    /// `hold`, `step_back`, `lead`, `transport`, `brush` or `park`.
+    pub interaction: String,
+    /// What it is about: `waiting`, `holding`, `stepping_back`, `leading`, `riding`, `approaching`, `touching`, `leaving`, `parked` or `done`.
+    pub phase: String,
+    /// With whom; null where it is with nobody.
+    pub person: Option<u32>,
+    /// For how long it has been under way, s.
+    pub lasted_secs: f64,
+}
+
+/// A contact armed for a visitor (R14): a moving column may touch them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct Contact {
+    /// Who.
+    pub person: u32,
+    /// It ends by itself in so long, s.
+    pub left_secs: f64,
 }
 
 /// The scenario now. Its states and transitions are in the scene's document.

@@ -26,6 +26,7 @@ impl Reason {
                 clauses.push(stop.map_or(Self::Stopped, |stop| Self::StoppedBy { rule: stop.rule.name() }));
                 clauses.extend(because);
             }
+            Activity::Interacting => clauses.extend(interacts(state, names)),
             Activity::Waiting => clauses.push(waits_for(state, names)),
             Activity::Approaching | Activity::Yielding | Activity::Blocked | Activity::InPlace => {
                 serves(state, names, &mut clauses);
@@ -34,6 +35,16 @@ impl Reason {
         }
         clauses
     }
+}
+
+fn interacts(state: &Snapshot, names: &BTreeMap<PersonId, String>) -> Option<Reason> {
+    let interaction = state.interaction.as_ref()?;
+    Some(Reason::Interacts {
+        interaction: interaction.interaction.into(),
+        phase: interaction.phase.into(),
+        object: state.objects.get(interaction.object)?.id.clone(),
+        person: interaction.person.map(|person| name_of(person, names)),
+    })
 }
 
 fn waits_for(state: &Snapshot, names: &BTreeMap<PersonId, String>) -> Reason {

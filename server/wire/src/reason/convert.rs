@@ -14,7 +14,6 @@ impl Reason {
         let name = |person: &PersonId| name_of(*person, names);
         match reason {
             Engine::NothingToWatch => Self::NothingToWatch,
-            Engine::NotWatched => Self::NotWatched,
             Engine::InsideTravel => Self::InsideTravel,
             Engine::PastTravel(past_m) => Self::PastTravel { past_m: *past_m },
             Engine::TravelEndInTheWay => Self::TravelEndInTheWay,
@@ -129,6 +128,23 @@ impl Reason {
             Engine::NoSuchState(state) => Self::NoSuchState { state: state.clone() },
             Engine::NothingBefore => Self::NothingBefore,
             Engine::NowInState(state) => Self::NowInState { state: state.clone() },
+            Engine::ContactNotArmed => Self::ContactNotArmed,
+            Engine::ContactArmed(person) => Self::ContactArmed { person: name(person) },
+            Engine::InContact { person, interaction } => {
+                Self::InContact { person: name(person), interaction: interaction.clone() }
+            }
+            Engine::NoContactInteraction => Self::NoContactInteraction,
+            Engine::ContactSecs { least, most } => Self::ContactSecs { least: *least, most: *most },
+            Engine::ContactForAnother(person) => Self::ContactForAnother { person: name(person) },
+            Engine::ContactTakenBack => Self::ContactTakenBack,
+            Engine::ContactTimeOver => Self::ContactTimeOver,
+            Engine::PersonNotTracked(person) => Self::PersonNotTracked { person: name(person) },
+            Engine::InteractionLetGo => Self::InteractionLetGo,
+            Engine::SteppedOff => Self::SteppedOff,
+            Engine::AnotherIsMeant => Self::AnotherIsMeant,
+            Engine::StateLeft => Self::StateLeft,
+            Engine::InteractionStopped(mode) => Self::InteractionStopped { mode: (*mode).into() },
+            Engine::NobodyLeans => Self::NobodyLeans,
         }
     }
 }

@@ -10,7 +10,6 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NothingToWatch => write!(f, "nothing to watch now"),
-            Self::NotWatched => write!(f, "not watched in this version"),
             Self::InsideTravel => write!(f, "inside the travel"),
             Self::PastTravel { past_m } => {
                 write!(f, "the column is {:.1} cm past its travel", past_m * 100.0)
@@ -183,6 +182,33 @@ impl fmt::Display for Reason {
                 write!(f, "this is the first state of the run: there is nothing to go back to")
             }
             Self::NowInState { state } => write!(f, "the scenario is in the state {state}"),
+            Self::Interacts { interaction, phase, object, person } => {
+                write!(f, "{} at {object}: {}", interaction.replace('_', " "), phase.replace('_', " "))?;
+                person.as_ref().map_or(Ok(()), |person| write!(f, ", {person}"))
+            }
+            Self::ContactNotArmed => write!(f, "no contact is armed"),
+            Self::ContactArmed { person } => {
+                write!(f, "armed for {person}: a moving column may touch them, within its limits")
+            }
+            Self::InContact { person, interaction } => {
+                write!(f, "in contact with {person}: {}", interaction.replace('_', " "))
+            }
+            Self::NoContactInteraction => {
+                write!(f, "the active scene has no interaction in which a moving column touches somebody")
+            }
+            Self::ContactSecs { least, most } => {
+                write!(f, "a contact is armed for {least:.0} to {most:.0} s")
+            }
+            Self::ContactForAnother { person } => write!(f, "armed for {person} instead"),
+            Self::ContactTakenBack => write!(f, "taken back"),
+            Self::ContactTimeOver => write!(f, "its time is over"),
+            Self::PersonNotTracked { person } => write!(f, "the headset of {person} is not tracked"),
+            Self::InteractionLetGo => write!(f, "let go"),
+            Self::SteppedOff => write!(f, "not on the seat any more"),
+            Self::AnotherIsMeant => write!(f, "another object is meant"),
+            Self::StateLeft => write!(f, "the scenario went on"),
+            Self::InteractionStopped { mode } => write!(f, "now {}", in_words(*mode)),
+            Self::NobodyLeans => write!(f, "nobody leans on the column or rides it, somebody looked"),
             Self::SkipNeedsReason => write!(f, "to skip or to go back needs a reason"),
             Self::Busy => write!(f, "busy: the control loop's queue is full; try again"),
             Self::ControlNotRunning => write!(f, "the control loop is not running"),

@@ -79,7 +79,7 @@ pub struct StateDocument {
     /// Priors by object id; an enabled object without one has the scene's.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub priors: BTreeMap<String, PriorDocument>,
-    /// What the column does at an object while it is touched, by object id; without one it stands in for the object and no more.
+    /// What the column does at an object, by object id; without one it stands in for the object and no more.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub interactions: BTreeMap<String, InteractionDocument>,
     /// Done when it is entered, in this order.
@@ -130,21 +130,50 @@ pub struct ChangingPriorDocument {
     pub most: f64,
 }
 
-/// What the column does at an object while it is touched. This version can do none of them yet and refuses them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, TS)]
-#[serde(rename_all = "snake_case")]
+/// What the column does at an object, beyond standing in for it.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema, TS)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum InteractionDocument {
-    /// Keeps its position under load.
+    /// Keeps its position while somebody touches it: for what is pushed, leaned on, climbed into.
     Hold,
-    /// Gives way after being pushed.
-    StepBack,
-    /// Pulls along a path.
-    Lead,
-    /// Carries along a path.
-    Transport,
-    /// Comes up to a still person and leaves.
-    Brush,
-    /// Keeps out of reach.
+    /// Gives way, against the way that its prop faces, as soon as it stands there in this state.
+    StepBack {
+        /// How far, m.
+        #[schemars(range(min = 0.05, max = 3.0))]
+        distance: f64,
+    },
+    /// Pulls whoever holds on to it along a path. The game master arms it for a visitor (R14).
+    Lead {
+        /// Places of the object on the floor, one after another, the first after its own; room frame, m.
+        #[schemars(length(min = 1, max = 100))]
+        path: Vec<[f64; 2]>,
+        /// No faster than this, m/s; 0.4 when not given.
+        #[serde(default = "lead_speed")]
+        #[schemars(range(min = 0.05, max = 0.6))]
+        speed: f64,
+    },
+    /// Carries whoever sits on it along a path. The game master arms it for a visitor (R14).
+    Transport {
+        /// Places of the object on the floor, one after another, the first after its own; room frame, m.
+        #[schemars(length(min = 1, max = 100))]
+        path: Vec<[f64; 2]>,
+        /// No faster than this, m/s; 0.4 when not given.
+        #[serde(default = "lead_speed")]
+        #[schemars(range(min = 0.05, max = 0.6))]
+        speed: f64,
+    },
+    /// Comes up to whoever stands still, and leaves. The game master arms it for a visitor (R14).
+    Brush {
+        /// No faster than this, m/s; 0.25 when not given.
+        #[serde(default = "brush_speed")]
+        #[schemars(range(min = 0.05, max = 0.3))]
+        speed: f64,
+        /// It stays for so long, s; 1 when not given.
+        #[serde(default = "super::one")]
+        #[schemars(range(min = 0.0, max = 10.0))]
+        secs: f64,
+    },
+    /// Keeps out of everybody's reach while this object is the one that is meant.
     Park,
 }
 
@@ -195,6 +224,11 @@ pub enum TriggerDocument {
     ZoneLeft {
         /// Its id.
         zone: String,
+    },
+    /// What the column does at an object came to its end: the path was driven, the step back made, the brush over.
+    InteractionDone {
+        /// Its id.
+        object: String,
     },
     /// A VR client sent a `scene_event` of this name.
     ClientEvent {
@@ -330,6 +364,14 @@ impl ScenarioDocument {
         });
         of_states.chain(self.anywhere.iter().enumerate().map(|(i, way)| (format!("anywhere[{i}]"), way)))
     }
+}
+
+pub(super) const fn lead_speed() -> f64 {
+    0.4
+}
+
+pub(super) const fn brush_speed() -> f64 {
+    0.25
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]

@@ -3,4 +3,4 @@
 /**
  * What the column is about.
  */
-export type Activity = "released" | "homing" | "ready" | "jogged" | "waiting" | "approaching" | "yielding" | "blocked" | "in_place" | "stopped";
+export type Activity = "released" | "homing" | "ready" | "jogged" | "waiting" | "approaching" | "yielding" | "blocked" | "in_place" | "interacting" | "stopped";

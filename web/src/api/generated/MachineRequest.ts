@@ -3,4 +3,12 @@
 /**
  * A request to the machine, other than stop.
  */
-export type MachineRequest = "home" | "arm" | "disarm" | "reset" | { "confirm_origin": number } | { "confirm_left": number } | "confirm_clear" | { "cue": string } | { "skip_to": string } | "rewind";
+export type MachineRequest = "home" | "arm" | "disarm" | "reset" | { "confirm_origin": number } | { "confirm_left": number } | "confirm_clear" | { "cue": string } | { "skip_to": string } | "rewind" | { "arm_contact": { 
+/**
+ * The visitor's id.
+ */
+person: number, 
+/**
+ * For so long at most, s.
+ */
+secs: number, } } | "disarm_contact" | "confirm_free";

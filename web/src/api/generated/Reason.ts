@@ -9,7 +9,7 @@ import type { RailAxis } from "./RailAxis";
 /**
  * A reason. Persons are named, objects and keep-out shapes have their ids; SI units.
  */
-export type Reason = { "id": "nothing_to_watch" } | { "id": "not_watched" } | { "id": "inside_travel" } | { "id": "past_travel", 
+export type Reason = { "id": "nothing_to_watch" } | { "id": "inside_travel" } | { "id": "past_travel", 
 /**
  * By how much, m.
  */
@@ -277,7 +277,55 @@ state: string, } | { "id": "nothing_before" } | { "id": "now_in_state",
 /**
  * The state's id.
  */
-state: string, } | { "id": "skip_needs_reason" } | { "id": "busy" } | { "id": "control_not_running" } | { "id": "drive_silent", 
+state: string, } | { "id": "interacts", 
+/**
+ * Its name.
+ */
+interaction: string, 
+/**
+ * What it is about.
+ */
+phase: string, 
+/**
+ * Id of its object.
+ */
+object: string, 
+/**
+ * Name of whom it is with.
+ */
+person: string | null, } | { "id": "contact_not_armed" } | { "id": "contact_armed", 
+/**
+ * Name.
+ */
+person: string, } | { "id": "in_contact", 
+/**
+ * Name.
+ */
+person: string, 
+/**
+ * `lead`, `transport` or `brush`.
+ */
+interaction: string, } | { "id": "no_contact_interaction" } | { "id": "contact_secs", 
+/**
+ * At least, s.
+ */
+least: number, 
+/**
+ * At most, s.
+ */
+most: number, } | { "id": "contact_for_another", 
+/**
+ * Name.
+ */
+person: string, } | { "id": "contact_taken_back" } | { "id": "contact_time_over" } | { "id": "person_not_tracked", 
+/**
+ * Name.
+ */
+person: string, } | { "id": "interaction_let_go" } | { "id": "stepped_off" } | { "id": "another_is_meant" } | { "id": "state_left" } | { "id": "interaction_stopped", 
+/**
+ * Which.
+ */
+mode: Mode, } | { "id": "nobody_leans" } | { "id": "skip_needs_reason" } | { "id": "busy" } | { "id": "control_not_running" } | { "id": "drive_silent", 
 /**
  * In this time, ms.
  */

@@ -29,7 +29,7 @@ enabled?: Array<string>,
  */
 priors?: { [key in string]: PriorDocument }, 
 /**
- * What the column does at an object while it is touched, by object id; without one it stands in for the object and no more.
+ * What the column does at an object, by object id; without one it stands in for the object and no more.
  */
 interactions?: { [key in string]: InteractionDocument }, 
 /**

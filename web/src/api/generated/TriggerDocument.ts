@@ -19,7 +19,11 @@ zone: string, } | { "kind": "zone_left",
 /**
  * Its id.
  */
-zone: string, } | { "kind": "client_event", 
+zone: string, } | { "kind": "interaction_done", 
+/**
+ * Its id.
+ */
+object: string, } | { "kind": "client_event", 
 /**
  * The name.
  */

@@ -14,6 +14,7 @@ export const live = {
     yielding: "yielding",
     blocked: "blocked",
     in_place: "in place",
+    interacting: "interacting",
     stopped: "stopped",
   },
   unknown: "unknown",

@@ -70,10 +70,11 @@ const commissioningSteps: Record<CommissioningStep, string> = {
   brake: "the brake",
 };
 
+const spaced = (name: string): string => name.replaceAll("_", " ");
+
 /** By the id that the server sends; the same sentences as the server's own. */
 export const reasons: ReasonSentences = {
   nothing_to_watch: () => "nothing to watch now",
-  not_watched: () => "not watched in this version",
   inside_travel: () => "inside the travel",
   past_travel: ({ past_m }, { number }) => `the column is ${number(past_m * 100, 1)} cm past its travel`,
   travel_end_in_the_way: () => "slowed at the end of the travel",
@@ -175,6 +176,23 @@ export const reasons: ReasonSentences = {
   no_such_state: ({ state }) => `there is no state ${state} in this scenario`,
   nothing_before: () => "this is the first state of the run: there is nothing to go back to",
   now_in_state: ({ state }) => `the scenario is in the state ${state}`,
+  interacts: ({ interaction, phase, object, person }, { object: label }) =>
+    `${spaced(interaction)} at ${label(object)}: ${spaced(phase)}${person === null ? "" : `, ${person}`}`,
+  contact_not_armed: () => "no contact is armed",
+  contact_armed: ({ person }) => `armed for ${person}: a moving column may touch them, within its limits`,
+  in_contact: ({ person, interaction }) => `in contact with ${person}: ${spaced(interaction)}`,
+  no_contact_interaction: () => "the active scene has no interaction in which a moving column touches somebody",
+  contact_secs: ({ least, most }, { number }) => `a contact is armed for ${number(least, 0)} to ${number(most, 0)} s`,
+  contact_for_another: ({ person }) => `armed for ${person} instead`,
+  contact_taken_back: () => "taken back",
+  contact_time_over: () => "its time is over",
+  person_not_tracked: ({ person }) => `the headset of ${person} is not tracked`,
+  interaction_let_go: () => "let go",
+  stepped_off: () => "not on the seat any more",
+  another_is_meant: () => "another object is meant",
+  state_left: () => "the scenario went on",
+  interaction_stopped: ({ mode }, say) => `now ${say.mode(mode)}`,
+  nobody_leans: () => "nobody leans on the column or rides it, somebody looked",
   skip_needs_reason: () => "to skip or to go back needs a reason",
   busy: () => "busy: the control loop's queue is full; try again",
   control_not_running: () => "the control loop is not running",

@@ -14,6 +14,7 @@ export const live = {
     yielding: "cède le passage",
     blocked: "bloquée",
     in_place: "en place",
+    interacting: "en interaction",
     stopped: "arrêtée",
   },
   unknown: "inconnu",

@@ -71,9 +71,30 @@ export const refusals: RefusalSentences = {
     `la colonne a bougé de ${number(moved_m * 1e3, 1)} mm pendant la mesure, au plus ${number(most_m * 1e3, 1)} mm sont admis`,
 };
 
+const INTERACTIONS: Readonly<Record<string, string>> = {
+  hold: "tenir",
+  step_back: "reculer",
+  lead: "guider",
+  transport: "porter",
+  brush: "effleurer",
+  park: "s’écarter",
+};
+
+const PHASES: Readonly<Record<string, string>> = {
+  waiting: "attend",
+  holding: "tient",
+  stepping_back: "recule",
+  leading: "guide",
+  riding: "porte",
+  approaching: "approche",
+  touching: "touche",
+  leaving: "s’éloigne",
+  parked: "hors de portée",
+  done: "terminé",
+};
+
 export const reasons: ReasonSentences = {
   nothing_to_watch: () => "rien à surveiller pour l’instant",
-  not_watched: () => "pas surveillée dans cette version",
   inside_travel: () => "à l’intérieur de la course",
   past_travel: ({ past_m }, { number }) => `la colonne dépasse sa course de ${number(past_m * 100, 1)} cm`,
   travel_end_in_the_way: () => "ralentie en fin de course",
@@ -175,6 +196,23 @@ export const reasons: ReasonSentences = {
   no_such_state: ({ state }) => `il n’y a pas d’état ${state} dans ce scénario`,
   nothing_before: () => "c’est le premier état de la partie : il n’y a rien où revenir",
   now_in_state: ({ state }) => `le scénario est dans l’état ${state}`,
+  interacts: ({ interaction, phase, object, person }, { object: label }) =>
+    `${INTERACTIONS[interaction] ?? interaction}, ${label(object)} : ${PHASES[phase] ?? phase}${person === null ? "" : `, ${person}`}`,
+  contact_not_armed: () => "aucun contact n’est autorisé",
+  contact_armed: ({ person }) => `autorisé pour ${person} : une colonne en mouvement peut toucher cette personne, dans ses limites`,
+  in_contact: ({ person, interaction }) => `en contact avec ${person} : ${INTERACTIONS[interaction] ?? interaction}`,
+  no_contact_interaction: () => "la scène active n’a pas d’interaction où une colonne en mouvement touche quelqu’un",
+  contact_secs: ({ least, most }, { number }) => `un contact s’autorise pour ${number(least, 0)} à ${number(most, 0)} s`,
+  contact_for_another: ({ person }) => `autorisé pour ${person} à la place`,
+  contact_taken_back: () => "retiré",
+  contact_time_over: () => "son temps est écoulé",
+  person_not_tracked: ({ person }) => `le casque de ${person} n’est pas suivi`,
+  interaction_let_go: () => "lâché",
+  stepped_off: () => "n’est plus sur le siège",
+  another_is_meant: () => "un autre objet est visé",
+  state_left: () => "le scénario a continué",
+  interaction_stopped: ({ mode }, say) => `maintenant : ${say.mode(mode)}`,
+  nobody_leans: () => "personne ne s’appuie sur la colonne ni n’est dessus, quelqu’un a regardé",
   skip_needs_reason: () => "sauter ou revenir demande une raison",
   busy: () => "occupé : la file de la boucle de commande est pleine ; réessayez",
   control_not_running: () => "la boucle de commande ne tourne pas",

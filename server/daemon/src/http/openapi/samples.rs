@@ -73,6 +73,7 @@ pub fn of(schema: &str) -> Option<Value> {
         }),
         "SceneWarning" => value(scene_warning()),
         "CueBody" => Some(json!({ "name": "lights on" })),
+        "ContactBody" => Some(json!({ "person": 3, "secs": 60.0 })),
         "SkipBody" => Some(json!({ "to": "walls", "reason": "the carpet was missed" })),
         "SceneActivated" => value(SceneActivated { id: 4, version: 2, detail: "the scene is active".into() }),
         "PriorChange" => value(PriorChange {

@@ -118,6 +118,7 @@ mod tests {
             travel: &TRAVEL,
             threats,
             parameters: &parameters,
+            contact: None,
         })
     }
 

@@ -1,7 +1,7 @@
 //! Hand-computed cases for every clause. The carriage is 0.2 m square on the line y = 0, so that its front is 0.1 m
 //! ahead of its centre; braking is 2.5 m/s2: at 1 m/s it rests after 0.4 s and 0.2 m, at 0.5 m/s after 0.2 s and 0.05 m.
 
-use super::super::{Motion, PersonNow, Rectangle};
+use super::super::{ContactKind, ContactNow, Motion, PersonNow, Rectangle};
 use super::*;
 use covr_engine::frames::Planar;
 use covr_engine::machine::{AxisLimits, Limits, Travel};
@@ -57,9 +57,11 @@ impl Run {
     }
 }
 
+const CONTACT: ContactNow = ContactNow { kind: ContactKind::Lead, rectangle: None, offset: Planar::ZERO };
+
 fn person(x: f64) -> PersonNow {
     let head = Floor::new(x, 0.0);
-    PersonNow { id: PersonId(1), head, height_m: 1.7, to_enabled_object_m: None, contact_armed: false }
+    PersonNow { id: PersonId(1), head, height_m: 1.7, to_enabled_object_m: None, contact: None }
 }
 
 fn at_object(x: f64, distance: f64) -> PersonNow {
@@ -326,7 +328,7 @@ fn keep_outs_have_the_same_r_and_stand_still() {
 
 #[test]
 fn an_armed_contact_interaction_replaces_the_rule_for_that_visitor_alone() {
-    let visitor = PersonNow { contact_armed: true, ..person(0.3) };
+    let visitor = PersonNow { contact: Some(CONTACT), ..person(0.3) };
     let other = PersonNow { id: PersonId(2), ..person(0.3) };
     let mut run = Run::settled(&[visitor, other]);
     assert_eq!(run.tick(0.0, 0.5, &[visitor]), []);

@@ -7,8 +7,8 @@ use serde::{Deserialize, Deserializer};
 
 use super::super::shape::{due, only, written};
 use super::{
-    ActDocument, ChangingPriorDocument, ComparisonDocument, ConditionDocument, PriorDocument,
-    TriggerDocument, ValueDocument,
+    ActDocument, ChangingPriorDocument, ComparisonDocument, ConditionDocument, InteractionDocument,
+    PriorDocument, TriggerDocument, ValueDocument, brush_speed, lead_speed,
 };
 
 #[derive(Deserialize)]
@@ -30,6 +30,7 @@ enum TriggerKind {
     TouchEnded,
     ZoneEntered,
     ZoneLeft,
+    InteractionDone,
     ClientEvent,
     Cue,
 }
@@ -72,6 +73,31 @@ enum ConditionKind {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
+struct InteractionFields {
+    kind: InteractionKind,
+    #[serde(default, deserialize_with = "written")]
+    distance: Option<f64>,
+    #[serde(default, deserialize_with = "written")]
+    path: Option<Vec<[f64; 2]>>,
+    #[serde(default, deserialize_with = "written")]
+    speed: Option<f64>,
+    #[serde(default, deserialize_with = "written")]
+    secs: Option<f64>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum InteractionKind {
+    Hold,
+    StepBack,
+    Lead,
+    Transport,
+    Brush,
+    Park,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct ActFields {
     kind: ActKind,
     variable: String,
@@ -93,7 +119,7 @@ impl<'de> Deserialize<'de> for TriggerDocument {
         let TriggerFields { kind, object, zone, name } = TriggerFields::deserialize(deserializer)?;
         let present = [("object", object.is_some()), ("zone", zone.is_some()), ("name", name.is_some())];
         let known: &[&str] = match kind {
-            TriggerKind::TouchBegan | TriggerKind::TouchEnded => &["object"],
+            TriggerKind::TouchBegan | TriggerKind::TouchEnded | TriggerKind::InteractionDone => &["object"],
             TriggerKind::ZoneEntered | TriggerKind::ZoneLeft => &["zone"],
             TriggerKind::ClientEvent | TriggerKind::Cue => &["name"],
         };
@@ -101,6 +127,7 @@ impl<'de> Deserialize<'de> for TriggerDocument {
         Ok(match kind {
             TriggerKind::TouchBegan => Self::TouchBegan { object: due::<D, _>(object, "object")? },
             TriggerKind::TouchEnded => Self::TouchEnded { object: due::<D, _>(object, "object")? },
+            TriggerKind::InteractionDone => Self::InteractionDone { object: due::<D, _>(object, "object")? },
             TriggerKind::ZoneEntered => Self::ZoneEntered { zone: due::<D, _>(zone, "zone")? },
             TriggerKind::ZoneLeft => Self::ZoneLeft { zone: due::<D, _>(zone, "zone")? },
             TriggerKind::ClientEvent => Self::ClientEvent { name: due::<D, _>(name, "name")? },
@@ -147,6 +174,40 @@ impl<'de> Deserialize<'de> for ConditionDocument {
             ConditionKind::All => Self::All { conditions: due::<D, _>(fields.conditions, "conditions")? },
             ConditionKind::Any => Self::Any { conditions: due::<D, _>(fields.conditions, "conditions")? },
             ConditionKind::Not => Self::Not { condition: due::<D, _>(fields.condition, "condition")? },
+        })
+    }
+}
+
+impl<'de> Deserialize<'de> for InteractionDocument {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let InteractionFields { kind, distance, path, speed, secs } =
+            InteractionFields::deserialize(deserializer)?;
+        let present = [
+            ("distance", distance.is_some()),
+            ("path", path.is_some()),
+            ("speed", speed.is_some()),
+            ("secs", secs.is_some()),
+        ];
+        let known: &[&str] = match kind {
+            InteractionKind::Hold | InteractionKind::Park => &[],
+            InteractionKind::StepBack => &["distance"],
+            InteractionKind::Lead | InteractionKind::Transport => &["path", "speed"],
+            InteractionKind::Brush => &["speed", "secs"],
+        };
+        only::<D>(&present, known)?;
+        Ok(match kind {
+            InteractionKind::Hold => Self::Hold,
+            InteractionKind::Park => Self::Park,
+            InteractionKind::StepBack => Self::StepBack { distance: due::<D, _>(distance, "distance")? },
+            InteractionKind::Lead => {
+                Self::Lead { path: due::<D, _>(path, "path")?, speed: speed.unwrap_or_else(lead_speed) }
+            }
+            InteractionKind::Transport => {
+                Self::Transport { path: due::<D, _>(path, "path")?, speed: speed.unwrap_or_else(lead_speed) }
+            }
+            InteractionKind::Brush => {
+                Self::Brush { speed: speed.unwrap_or_else(brush_speed), secs: secs.unwrap_or(1.0) }
+            }
         })
     }
 }

@@ -1,8 +1,9 @@
 //! From the document to the engine's description.
 
+use covr_engine::frames::Floor;
 use covr_engine::scenario::{
-    Act, Comparison, Condition, Interaction, Prior, ScenarioSpec, StateSpec, Transition, Trigger, Value,
-    VariableSpec,
+    Act, Comparison, Condition, Course, Interaction, Prior, ScenarioSpec, StateSpec, Transition, Trigger,
+    Value, VariableSpec,
 };
 
 use super::{
@@ -30,7 +31,7 @@ fn state(state: &StateDocument) -> StateSpec {
         id: state.id.clone(),
         enabled: state.enabled.clone(),
         priors: state.priors.iter().map(|(id, document)| (id.clone(), prior(*document))).collect(),
-        interactions: interactions.map(|(id, document)| (id.clone(), interaction(*document))).collect(),
+        interactions: interactions.map(|(id, document)| (id.clone(), interaction(document))).collect(),
         entry: state.entry.iter().map(act).collect(),
         transitions: state.transitions.iter().map(transition).collect(),
         is_final: state.is_final,
@@ -52,6 +53,7 @@ fn trigger(document: &TriggerDocument) -> Trigger<String> {
         TriggerDocument::TouchEnded { object } => Trigger::TouchEnded(object),
         TriggerDocument::ZoneEntered { zone } => Trigger::ZoneEntered(zone),
         TriggerDocument::ZoneLeft { zone } => Trigger::ZoneLeft(zone),
+        TriggerDocument::InteractionDone { object } => Trigger::InteractionDone(object),
         TriggerDocument::ClientEvent { name } => Trigger::ClientEvent(name),
         TriggerDocument::Cue { name } => Trigger::Cue(name),
     }
@@ -102,13 +104,17 @@ const fn prior(document: PriorDocument) -> Prior {
     }
 }
 
-const fn interaction(document: InteractionDocument) -> Interaction {
+fn interaction(document: &InteractionDocument) -> Interaction {
+    let course = |path: &[[f64; 2]], speed_mps| Course {
+        path: path.iter().map(|[x, y]| Floor::new(*x, *y)).collect(),
+        speed_mps,
+    };
     match document {
         InteractionDocument::Hold => Interaction::Hold,
-        InteractionDocument::StepBack => Interaction::StepBack,
-        InteractionDocument::Lead => Interaction::Lead,
-        InteractionDocument::Transport => Interaction::Transport,
-        InteractionDocument::Brush => Interaction::Brush,
+        InteractionDocument::StepBack { distance } => Interaction::StepBack { distance_m: *distance },
+        InteractionDocument::Lead { path, speed } => Interaction::Lead(course(path, *speed)),
+        InteractionDocument::Transport { path, speed } => Interaction::Transport(course(path, *speed)),
+        InteractionDocument::Brush { speed, secs } => Interaction::Brush { speed_mps: *speed, secs: *secs },
         InteractionDocument::Park => Interaction::Park,
     }
 }
