@@ -25,8 +25,8 @@ pub use error::{ClientError, ErrorCode};
 pub use outgoing::POSE_RATE_HZ;
 pub use pace::{AbuseGauge, MOST_POSES_PER_SEC, OTHER_MESSAGES_PER_SEC, OutOfOrder, Sequencer, Verdict};
 pub use to_client::{
-    ActiveScene, ClientLimits, ClockPong, ColumnNow, EventAnswered, ObjectPlace, Prediction, PropAt,
-    ScenarioNow, StopState, ToClient, Welcome,
+    ActiveScene, ClientLimits, ClockPong, ColumnNow, EventAnswered, InteractionNow, ObjectPlace, Prediction,
+    PropAt, ScenarioNow, StopState, ToClient, Welcome,
 };
 
 /// The subprotocol of JSON text frames.

@@ -10,8 +10,8 @@ use covr_engine::snapshot::Snapshot;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{
-    ActiveScene, ClientLimits, ColumnNow, MAX_FRAME_BYTES, ObjectPlace, Prediction, PropAt, ScenarioNow,
-    StopState,
+    ActiveScene, ClientLimits, ColumnNow, InteractionNow, MAX_FRAME_BYTES, ObjectPlace, Prediction, PropAt,
+    ScenarioNow, StopState,
 };
 use crate::convention::ClientFrame;
 use crate::dashboard::clears_when;
@@ -72,6 +72,17 @@ impl ColumnNow {
             velocity: frame.client_velocity(column.velocity),
             homed: column.homed,
             prop_at,
+            interaction: state.interaction.as_ref().and_then(|now| {
+                let object = spec.objects.get(now.object)?;
+                let offset = object.prop.and_then(|prop| spec.props.get(prop)).map(|prop| prop.offset);
+                let place = column.position + offset.unwrap_or_default();
+                Some(InteractionNow {
+                    object: object.id.clone(),
+                    interaction: now.interaction.into(),
+                    phase: now.phase.into(),
+                    position: frame.client_point(&Point::new(place.x, place.y, object.position.z())),
+                })
+            }),
         }
     }
 }

@@ -111,6 +111,22 @@ pub struct ColumnNow {
     pub homed: bool,
     /// Every object of the active scene, in its order.
     pub prop_at: Vec<PropAt>,
+    /// The interaction under way; null: none.
+    #[serde(default)]
+    pub interaction: Option<InteractionNow>,
+}
+
+/// What the column does at an object now, beyond standing in for it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema, TS)]
+pub struct InteractionNow {
+    /// The object's id.
+    pub object: String,
+    /// `hold`, `step_back`, `lead`, `transport`, `brush` or `park`.
+    pub interaction: String,
+    /// `waiting`, `holding`, `stepping_back`, `leading`, `riding`, `approaching`, `touching`, `leaving`, `parked` or `done`.
+    pub phase: String,
+    /// Where its prop is now, at the object's height: draw the object here while it is led, carried, or comes up to somebody.
+    pub position: [f64; 3],
 }
 
 /// Whether what stands in for an object is there.

@@ -47,6 +47,7 @@ export type { HardwarePart } from "./HardwarePart";
 export type { HeadPose } from "./HeadPose";
 export type { Interaction } from "./Interaction";
 export type { InteractionDocument } from "./InteractionDocument";
+export type { InteractionNow } from "./InteractionNow";
 export type { JogAim } from "./JogAim";
 export type { KeepOutDocument } from "./KeepOutDocument";
 export type { KeepOutShape } from "./KeepOutShape";
