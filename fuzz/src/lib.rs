@@ -10,7 +10,7 @@ use covr_engine::intention::{IntentionParameters, RuleName};
 use covr_engine::machine::{Drive, Homing, Limits, MachineReport};
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::motion::MotionName;
-use covr_engine::observation::{InputLevel, Inputs, Observation, PersonId, PoseSample};
+use covr_engine::observation::{Hands, InputLevel, Inputs, Observation, PersonId, PoseSample};
 use covr_engine::safety::separation::KeptFrom;
 use covr_engine::safety::vetted::Action;
 use covr_engine::time::{Span, Time};
@@ -120,7 +120,9 @@ impl Driven {
                 let orientation = UnitQuaternion::from_euler_angles(0.0, 0.0, 6.0 * share - 3.0);
                 let pose = Pose { position: at, orientation };
                 let (tracked, worn) = (!value.is_multiple_of(7), !value.is_multiple_of(11));
-                Observation::Pose(person, PoseSample { taken_at: self.now, pose, tracked, worn })
+                let hand = Point::new(at.x() + share, at.y() - 0.3, at.z() - 0.6 * share);
+                let hands = Hands { left: None, right: (!value.is_multiple_of(5)).then_some(hand) };
+                Observation::Pose(person, PoseSample { taken_at: self.now, pose, tracked, worn, hands })
             }
             8 if value.is_multiple_of(2) => Observation::ClientGone(person),
             8 => Observation::ClientBack(person),

@@ -6,7 +6,7 @@ use covr_engine::event::EventKind;
 use covr_engine::frames::{Floor, Planar, Point, Pose};
 use covr_engine::intention::{IntentionParameters, RuleName};
 use covr_engine::motion::MotionName;
-use covr_engine::observation::{Observation, PersonId, PoseSample};
+use covr_engine::observation::{Hands, Observation, PersonId, PoseSample};
 use covr_engine::safety::separation::KeptFrom;
 use covr_engine::scene::Scene;
 use covr_engine::time::{Span, Time};
@@ -71,7 +71,13 @@ impl Play {
         let orientation = UnitQuaternion::from_euler_angles(0.0, -dz.atan2(dx.hypot(dy)), dy.atan2(dx));
         let pose = Pose { position: head, orientation };
         if self.steps.is_multiple_of(3) {
-            let sample = PoseSample { taken_at: self.control.now(), pose, tracked: true, worn: true };
+            let sample = PoseSample {
+                taken_at: self.control.now(),
+                pose,
+                tracked: true,
+                worn: true,
+                hands: Hands::UNKNOWN,
+            };
             self.control.send(ADA, sample);
         }
         self.steps += 1;
@@ -340,7 +346,16 @@ fn nobody_is_met_while_states_change_under_their_feet() {
         for (i, sample) in Visitor::of_scene(scene.spec(), 250.0, seed).take(15_000).enumerate() {
             if i % 3 == 0 {
                 let taken_at = began + (sample.at - Time::ZERO);
-                control.send(ADA, PoseSample { taken_at, pose: sample.pose, tracked: true, worn: true });
+                control.send(
+                    ADA,
+                    PoseSample {
+                        taken_at,
+                        pose: sample.pose,
+                        tracked: true,
+                        worn: true,
+                        hands: sample.hands,
+                    },
+                );
             }
             control.step(&[TrueHead { person: ADA, pose: sample.pose }]);
         }

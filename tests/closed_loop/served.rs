@@ -62,7 +62,10 @@ fn the_column_is_there_before_the_hand_in_at_least_half_of_the_reaches() {
         let head = TrueHead { person, pose: sample.pose };
         if i % 3 == 0 {
             let taken_at = began + (sample.at - Time::ZERO);
-            control.send(person, PoseSample { taken_at, pose: sample.pose, tracked: true, worn: true });
+            control.send(
+                person,
+                PoseSample { taken_at, pose: sample.pose, tracked: true, worn: true, hands: sample.hands },
+            );
         }
         let truth = control.step(&[head]).truth;
         // The hand is at the object when reaching ends.

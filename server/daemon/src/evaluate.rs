@@ -85,6 +85,9 @@ pub struct Evaluate {
     /// The machine's accelerations, braking included, as a share of the paper's.
     #[arg(long, default_value_t = 1.0, value_parser = |text: &str| within("acceleration-share", text, 0.05, 10.0))]
     pub acceleration_share: f64,
+    /// The client sends no hands, where the recording has them.
+    #[arg(long)]
+    pub without_hands: bool,
     /// Threads; 0 for as many as there are cores. The result does not depend on it.
     #[arg(long, default_value_t = 0)]
     pub threads: usize,
@@ -205,6 +208,7 @@ fn conditions(options: &Evaluate) -> Conditions {
         loss: options.loss,
         noise,
         acceleration_share: options.acceleration_share,
+        without_hands: options.without_hands,
     }
 }
 

@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use anyhow::{Context, bail};
 use covr_engine::frames::{Pose, Room};
+use covr_engine::observation::Hands;
 use covr_engine::time::Time;
 use covr_study::visitor::{Phase, Visitor as MadeUp, VisitorSample};
 use covr_wire::scene::{SceneDocument, build_scene};
@@ -82,6 +83,7 @@ async fn play_recordings(
         let samples = recording.resampled(SEND_HZ / options.speed).map(|sample| Moment {
             at: sample.at,
             head: room_from_trace.pose(&sample.pose),
+            hands: sample.hands_in(&room_from_trace),
             touches: None,
         });
         play(options, headset, samples).await?;
@@ -118,7 +120,7 @@ async fn play(
 ) -> anyhow::Result<()> {
     let scene_version = headset.scene_version();
     let Some(first) = samples.next() else { return Ok(()) };
-    headset.enter(&options.name, &first.head).await?;
+    headset.enter(&options.name, &first.head, &first.hands).await?;
     let started = tokio::time::Instant::now();
     let mut touches: Option<String> = None;
     for moment in samples {
@@ -127,7 +129,7 @@ async fn play(
         if options.trace.is_none() && headset.scene_version() != scene_version {
             break;
         }
-        headset.send_pose(&options.name, &moment.head).await.context("a pose")?;
+        headset.send_pose(&options.name, &moment.head, &moment.hands).await.context("a pose")?;
         if touches != moment.touches {
             if let Some(object) = std::mem::replace(&mut touches, moment.touches) {
                 headset.let_go(&options.name, &object).await?;
@@ -144,6 +146,7 @@ async fn play(
 struct Moment {
     at: Time,
     head: Pose<Room>,
+    hands: Hands,
     /// The object at which the hand is. Recordings do not say.
     touches: Option<String>,
 }
@@ -152,7 +155,7 @@ impl Moment {
     fn of_made_up(sample: &VisitorSample, objects: &[String]) -> Self {
         let touched = sample.goal.filter(|_| sample.phase == Phase::Dwells);
         let touches = touched.and_then(|goal| objects.get(goal)).cloned();
-        Self { at: sample.at, head: sample.pose, touches }
+        Self { at: sample.at, head: sample.pose, hands: sample.hands, touches }
     }
 }
 

@@ -10,6 +10,7 @@ mod velocity;
 
 use crate::frames::{Floor, Planar, Pose, Room};
 use crate::motion::standing::StandingName;
+use crate::observation::Hands;
 use crate::scene::Scene;
 use crate::time::Time;
 pub use bayes::BayesParameters;
@@ -41,6 +42,8 @@ pub struct View<'a> {
     pub head: Pose<Room>,
     /// Velocity of the head over the floor, smoothed, m/s.
     pub velocity: Planar,
+    /// The hands, each where the client sends it.
+    pub hands: Hands,
     /// The objects, in the scene's order.
     pub sights: &'a [Sight],
 }
@@ -247,6 +250,7 @@ mod tests {
             taken_at: Time::from_micros(at_millis * 1000),
             head: Pose { position, orientation: nalgebra::UnitQuaternion::identity() },
             velocity: Planar::new(0.8, 0.0),
+            hands: Hands::UNKNOWN,
             sights,
         }
     }

@@ -2,13 +2,32 @@
 
 use std::sync::Arc;
 
-use crate::frames::{Pose, Room};
+use crate::frames::{Point, Pose, Room};
 use crate::machine::MachineReport;
 use crate::time::Time;
 
 /// A person in this run, as the shell numbers them. Never reused within a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PersonId(pub u32);
+
+/// Where a person's hands are, each where it is known. Evidence of intention alone: nothing of safety looks at them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Hands {
+    /// The left one.
+    pub left: Option<Point<Room>>,
+    /// The right one.
+    pub right: Option<Point<Room>>,
+}
+
+impl Hands {
+    /// Nobody knows where they are.
+    pub const UNKNOWN: Self = Self { left: None, right: None };
+
+    /// Left and right.
+    pub const fn both(&self) -> [Option<Point<Room>>; 2] {
+        [self.left, self.right]
+    }
+}
 
 /// A headset pose, already in the room frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +40,8 @@ pub struct PoseSample {
     pub tracked: bool,
     /// The headset is on a head.
     pub worn: bool,
+    /// Where the hands were then.
+    pub hands: Hands,
 }
 
 /// What the digital inputs of one kind say together: the first that is not inactive, by its name.

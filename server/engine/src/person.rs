@@ -203,6 +203,7 @@ mod tests {
     use super::*;
     use crate::frames::{Floor, Point, Pose};
     use crate::machine::Travel;
+    use crate::observation::Hands;
     use crate::scene::{ObjectSpec, SceneSpec, Shape};
     use nalgebra::UnitQuaternion;
 
@@ -222,7 +223,13 @@ mod tests {
 
     fn sample(at_millis: i64, x: f64, worn: bool) -> PoseSample {
         let pose = Pose { position: Point::new(x, 2.0, 1.6), orientation: UnitQuaternion::identity() };
-        PoseSample { taken_at: Time::from_micros(at_millis * 1000), pose, tracked: true, worn }
+        PoseSample {
+            taken_at: Time::from_micros(at_millis * 1000),
+            pose,
+            tracked: true,
+            worn,
+            hands: Hands::UNKNOWN,
+        }
     }
 
     fn fed(samples: &[PoseSample]) -> Person {

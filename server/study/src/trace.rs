@@ -131,6 +131,8 @@ pub struct Frame {
     pub yaw_rad: Option<f64>,
     /// Elevation of the view axis.
     pub pitch_rad: Option<f64>,
+    /// The left and the right hand, each where it was tracked.
+    pub hands: [Option<Point<Trace>>; 2],
 }
 
 /// Why a trace cannot be used.

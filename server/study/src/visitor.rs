@@ -5,14 +5,18 @@
 //! (p50 0.26, p95 0.87, p99 1.12, greatest 1.58 m/s). It walks through the column if that is in its way: a visitor
 //! who cannot see the machine does too. The seed decides everything.
 
+mod arms;
+
 use std::f64::consts::{PI, TAU};
 
 use covr_engine::frames::{Floor, Planar, Point, Pose, Room};
 use covr_engine::machine::Travel;
+use covr_engine::observation::Hands;
 use covr_engine::scene::SceneSpec;
 use covr_engine::time::{Span, Time};
 use nalgebra::UnitQuaternion;
 
+use self::arms::Arms;
 use crate::random::Random;
 
 /// What the visitor is doing.
@@ -39,6 +43,8 @@ pub struct VisitorSample {
     pub at: Time,
     /// Where the head is.
     pub pose: Pose<Room>,
+    /// Where the hands are.
+    pub hands: Hands,
     /// What it does.
     pub phase: Phase,
     /// Which object it is after, by index in the scene; none while it returns and reads.
@@ -71,6 +77,9 @@ pub struct Visitor {
     view: View,
     gaze: Gaze,
     gaze_until: Time,
+    /// How long the next reach takes from the arrival of the head on, s.
+    reach_secs: f64,
+    arms: Arms,
 }
 
 /// From one standing place to the next: minimum jerk along a slight bow.
@@ -125,6 +134,8 @@ impl Visitor {
             view: View { yaw_rad, pitch_rad: 0.0 },
             gaze: Gaze::Along { yaw_rad, pitch_rad: 0.0 },
             gaze_until: Time::ZERO,
+            reach_secs: 0.0,
+            arms: Arms::new(seed ^ OF_ARMS, yaw_rad),
         };
         visitor.begin(Phase::Reads, Time::ZERO);
         visitor
@@ -149,7 +160,9 @@ impl Visitor {
         self.look(position, at);
         let orientation = UnitQuaternion::from_euler_angles(0.0, -self.view.pitch_rad, self.view.yaw_rad);
         let goal = self.goal.map(|goal| goal.object);
-        VisitorSample { at, pose: Pose { position, orientation }, phase: self.phase, goal }
+        let pose = Pose { position, orientation };
+        let hands = self.arms.hands(&pose, at);
+        VisitorSample { at, pose, hands, phase: self.phase, goal }
     }
 
     fn begin(&mut self, phase: Phase, at: Time) {
@@ -165,12 +178,25 @@ impl Visitor {
                 self.gaze_until = at;
                 self.random.between(1.0, 3.0) + KNOWS_BEFORE_SECS
             }
-            Phase::Walks => self.set_out(at),
-            Phase::Reaches => self.random.between(0.2, 0.5),
+            Phase::Walks => {
+                let secs = self.set_out(at);
+                self.reach_secs = self.random.between(0.2, 0.5);
+                if let Some(goal) = self.goal {
+                    let head_arrives = at + Span::from_secs(secs);
+                    self.arms.reach_for(
+                        goal.position,
+                        head_arrives,
+                        head_arrives + Span::from_secs(self.reach_secs),
+                    );
+                }
+                secs
+            }
+            Phase::Reaches => self.reach_secs,
             Phase::Dwells => self.random.between(1.0, 3.0),
             Phase::Returns => {
                 self.last_object = self.goal.map(|goal| goal.object);
                 self.goal = None;
+                self.arms.draw_back(at);
                 self.set_out(at)
             }
         };
@@ -299,6 +325,8 @@ impl Iterator for Visitor {
     }
 }
 
+/// Arms have chance of their own.
+const OF_ARMS: u64 = 0x4152_4d53;
 /// Whoever has found the goal keeps it in view for so long before setting out, s (jov2023: 2 s from the end of the
 /// preview to the response).
 const KNOWS_BEFORE_SECS: f64 = 2.0;

@@ -160,7 +160,7 @@ impl Workload {
             let due = |at: Time| taken_at(at) + UNDERWAY <= self.now;
             while let Some(sample) = headset.poses.next_if(|sample| due(sample.at)) {
                 let (taken_at, pose) = (taken_at(sample.at), sample.pose);
-                let sample = PoseSample { taken_at, pose, tracked: true, worn: true };
+                let sample = PoseSample { taken_at, pose, tracked: true, worn: true, hands: sample.hands };
                 self.engine.observe(self.now, Observation::Pose(headset.person, sample));
             }
         }

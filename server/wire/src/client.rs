@@ -149,7 +149,7 @@ pub struct HeadPose {
     pub tracked: bool,
     /// The headset is on a head.
     pub worn: bool,
-    /// The hands, where known.
+    /// The hands, where known: evidence of which object is meant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hands: Option<Hands>,
 }

@@ -14,9 +14,10 @@
 //! `room_from_tracking` of the calibration then takes it to the room.
 
 use covr_engine::frames::{Planar, Point, Pose, RigidMap, Room, Tracking};
+use covr_engine::observation;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use crate::client::Convention;
+use crate::client::{Convention, Hands};
 
 impl Convention {
     /// A position in this convention's axes and unit.
@@ -114,6 +115,22 @@ impl ClientFrame {
     /// A client's point (a hand) in the room.
     pub fn room_point(&self, position: [f64; 3]) -> Point<Room> {
         self.room_from_tracking.point(&self.convention.point_to_tracking(position))
+    }
+
+    /// A client's hands in the room; unknown where it sends none.
+    pub fn room_hands(&self, hands: Option<Hands>) -> observation::Hands {
+        let room = |hand: Option<[f64; 3]>| hand.map(|position| self.room_point(position));
+        hands.map_or(observation::Hands::UNKNOWN, |hands| observation::Hands {
+            left: room(hands.left),
+            right: room(hands.right),
+        })
+    }
+
+    /// Hands of the room in the client's convention and unit; none where neither is known.
+    pub fn client_hands(&self, hands: &observation::Hands) -> Option<Hands> {
+        let client = |hand: Option<Point<Room>>| hand.map(|point| self.client_point(&point));
+        let [left, right] = hands.both().map(client);
+        (left.is_some() || right.is_some()).then_some(Hands { left, right })
     }
 
     /// A point of the room in the client's convention and unit.
@@ -255,6 +272,22 @@ mod tests {
             let back = frame.room_pose(client_position, client_orientation);
             prop_assert!(back.position.distance_m(&pose.position) < 1e-9);
             prop_assert!(back.orientation.angle_to(&pose.orientation) < 1e-7);
+        }
+
+        #[test]
+        fn hands_come_back_as_they_went_each_where_it_is_known(
+            frame in any_frame(),
+            left in prop::option::of(prop::array::uniform3(-10.0..10.0)),
+            right in prop::option::of(prop::array::uniform3(-10.0..10.0)),
+        ) {
+            let room = |hand: Option<[f64; 3]>| hand.map(|at| Point::<Room>::from_vector(Vector3::from(at)));
+            let hands = observation::Hands { left: room(left), right: room(right) };
+            let sent = frame.client_hands(&hands);
+            prop_assert_eq!(sent.is_some(), left.is_some() || right.is_some());
+            for (back, hand) in frame.room_hands(sent).both().into_iter().zip(hands.both()) {
+                prop_assert_eq!(back.is_some(), hand.is_some());
+                prop_assert!(back.zip(hand).is_none_or(|(back, hand)| back.distance_m(&hand) < 1e-9));
+            }
         }
 
         /// A rotation composed in the client's algebra is the same rotation composed in the tracking frame.

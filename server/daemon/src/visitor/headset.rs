@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use covr_engine::frames::{Pose, RigidMap, Room, Tracking};
+use covr_engine::observation::Hands;
 use covr_wire::client::{
     ActiveScene, ClientHello, ClockPing, Convention, Encoding, Frame, FromClient, HeadPose, JSON_SUBPROTOCOL,
     PersonName, PongReceived, ToClient, Touch, decode_from_server,
@@ -50,7 +51,7 @@ impl Headset {
             pong: None,
         };
         let hello =
-            ClientHello { name: name.into(), convention: Convention::Openxr, token: None, hands: false };
+            ClientHello { name: name.into(), convention: Convention::Openxr, token: None, hands: true };
         headset.say(&FromClient::Hello(hello)).await?;
         let deadline = tokio::time::Instant::now() + LONGEST_WELCOME;
         while headset.scene.is_none() {
@@ -62,11 +63,11 @@ impl Headset {
     }
 
     /// The person enters, and where they are goes out with it: a person inside whose place is unknown stops the machine.
-    pub async fn enter(&mut self, person: &str, pose: &Pose<Room>) -> anyhow::Result<()> {
+    pub async fn enter(&mut self, person: &str, pose: &Pose<Room>, hands: &Hands) -> anyhow::Result<()> {
         self.sequence = 0;
         let enter = frame_of(&FromClient::Enter(PersonName { person: person.into() }))?;
         self.socket.feed(enter).await.map_err(lost)?;
-        self.send_pose(person, pose).await
+        self.send_pose(person, pose, hands).await
     }
 
     /// The person leaves.
@@ -74,8 +75,8 @@ impl Headset {
         self.say(&FromClient::Leave(PersonName { person: person.into() })).await
     }
 
-    /// Send where the head is now.
-    pub async fn send_pose(&mut self, person: &str, pose: &Pose<Room>) -> anyhow::Result<()> {
+    /// Send where head and hands are now.
+    pub async fn send_pose(&mut self, person: &str, pose: &Pose<Room>, hands: &Hands) -> anyhow::Result<()> {
         let (position, orientation) = self.frame.client_pose(pose);
         self.sequence = self.sequence.wrapping_add(1);
         let pose = HeadPose {
@@ -86,7 +87,7 @@ impl Headset {
             orientation,
             tracked: true,
             worn: true,
-            hands: None,
+            hands: self.frame.client_hands(hands),
         };
         self.say(&FromClient::Pose(pose)).await
     }

@@ -172,6 +172,7 @@ impl Following {
                     taken_at: sample.taken_at,
                     head: sample.pose,
                     velocity: person.velocity(),
+                    hands: sample.hands,
                     sights: &visitor.sights,
                 };
                 visitor.rule.weigh(&view, &mut visitor.belief);

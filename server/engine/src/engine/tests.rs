@@ -17,7 +17,7 @@ use crate::machine::Homing;
 use crate::mode::RequestKind;
 use crate::motion::MotionName;
 use crate::motion::jog::{Aim, JogOrder};
-use crate::observation::PoseSample;
+use crate::observation::{Hands, PoseSample};
 use crate::safety::separation::KeptFrom;
 use crate::safety::vetted::Action;
 use crate::scene::{KeepOutShape, KeepOutSpec, ObjectSpec, SceneSpec, Shape};
@@ -140,7 +140,7 @@ impl Room {
             let orientation = UnitQuaternion::from_euler_angles(0.0, 0.0, yaw);
             let pose = Pose { position: Point::new(x, y, 1.6), orientation };
             let taken_at = self.now - Span::from_millis(20);
-            let sample = PoseSample { taken_at, pose, tracked: true, worn: true };
+            let sample = PoseSample { taken_at, pose, tracked: true, worn: true, hands: Hands::UNKNOWN };
             self.engine.observe(self.now, Observation::Pose(VISITOR, sample));
         }
         let command = self.engine.step(self.now);

@@ -6,20 +6,24 @@
 //! ```text
 //! p_i(t) ~ [ e^(-dt/tau) p_i(t-dt) + (1 - e^(-dt/tau)) P_i ] * exp(dt * l_i)
 //! l_i = - g(speed) min(gaze_i, c_g)  -  m(speed) [ w min(way_i, c_w) + n d_i ]
-//! belief_i ~ p_i * exp(z_i)
+//! belief_i ~ p_i * exp(z_i + q_i)
 //! z_i(t) = e^(-dt/tau_z) z_i(t-dt)  -  dt * m(speed) [ h min(heading_i, c_g) + v min(elevation_i, c_v) + u min(way_i, c_w) ]
 //! ```
 //!
 //! The second part is what is seen just now of somebody who walks: the look settles on what is meant only in the last second
 //! or so, and weighs more there than anything before. On people left out of the fit it told the goal of five objects 2 to 3
-//! points more often from 1.5 s before the touch on than the first part alone.
+//! points more often from 1.5 s before the touch on than the first part alone. q is what a hand that goes out says of where it
+//! goes to ([`hands`]); it is nothing where no hand is tracked.
 //!
 //! P is the scenario prior and nothing else; a prior that changes reweighs the belief at once. Evidence is counted a
 //! second, not a pose, as poses that follow one another say the same. It falls with the angle itself: on recorded reaches
 //! that told neighbours apart earlier than bells about the angle did. It is capped (c): people glance away.
 
+mod hands;
+
 use nalgebra::{UnitVector3, Vector3};
 
+use self::hands::HandsWatch;
 use super::{Belief, Rule, Sight, View};
 use crate::frames::Planar;
 use crate::time::Time;
@@ -49,6 +53,12 @@ pub struct BayesParameters {
     pub now_elevation_rate: f64,
     /// u: how far off the way is, just now, 1/(s rad).
     pub now_way_rate: f64,
+    /// k: how much the way of a hand tells that goes out and comes no nearer to an object, 1/m.
+    pub hand_rate: f64,
+    /// tau_q: for so long what a hand did counts, s.
+    pub hand_secs: f64,
+    /// Farther than this from the head axis, over the floor, a hand is held out, m.
+    pub hand_out_m: f64,
     /// From this speed on somebody walks in full, m/s.
     pub walking_mps: f64,
     /// tau: for so long a mind is made up, s.
@@ -74,6 +84,9 @@ impl Default for BayesParameters {
             now_heading_rate: 43.0,
             now_elevation_rate: 8.0,
             now_way_rate: 10.0,
+            hand_rate: 40.0,
+            hand_secs: 0.5,
+            hand_out_m: 0.35,
             walking_mps: 0.8,
             mind_secs: 42.0,
             none_prior: 0.02,
@@ -90,6 +103,9 @@ pub struct Bayes {
     probabilities: Vec<f64>,
     /// z: what is seen of each just now, and of none at the end.
     now: Vec<f64>,
+    /// q: what the hands say of each, and of none at the end; 0 where none was ever tracked.
+    reached_for: Vec<f64>,
+    hands: HandsWatch,
     /// What they are priors of.
     priors: Vec<f64>,
     seen: Option<Seen>,
@@ -107,7 +123,15 @@ struct Seen {
 impl Bayes {
     /// Nothing seen yet.
     pub const fn new(parameters: BayesParameters) -> Self {
-        Self { parameters, probabilities: Vec::new(), now: Vec::new(), priors: Vec::new(), seen: None }
+        Self {
+            parameters,
+            probabilities: Vec::new(),
+            now: Vec::new(),
+            reached_for: Vec::new(),
+            hands: HandsWatch::NOTHING_SEEN,
+            priors: Vec::new(),
+            seen: None,
+        }
     }
 
     /// Bring the priors in: as they are at first, by reweighing later.
@@ -123,6 +147,9 @@ impl Bayes {
             self.probabilities.clone_from(&self.priors);
             self.now.clear();
             self.now.resize(self.priors.len(), 0.0);
+            self.reached_for.clear();
+            self.reached_for.resize(self.priors.len(), 0.0);
+            self.hands = HandsWatch::NOTHING_SEEN;
             self.seen = None;
             return;
         }
@@ -155,6 +182,25 @@ impl Bayes {
         }
         let ahead = UnitVector3::new_normalize(now + turning * self.parameters.gaze_lead_secs);
         (Seen { at: view.taken_at, view: now, turning }, dt, ahead)
+    }
+}
+
+impl Bayes {
+    /// What the hands say of each object, `dt` after the pose before.
+    fn watch_hands(&mut self, view: &View<'_>, dt: f64) {
+        let p = self.parameters;
+        let out = self.hands.watch(view, p.hand_out_m);
+        let fades = (-dt / p.hand_secs).exp();
+        for (i, reached_for) in self.reached_for.iter_mut().enumerate() {
+            *reached_for *= fades;
+            for hand in out.iter().flatten() {
+                let astray_m = match view.sights.get(i) {
+                    Some(sight) => hand.astray_m(sight),
+                    None => hand.astray_by_m(p.none_angle_rad),
+                };
+                *reached_for -= p.hand_rate * astray_m;
+            }
+        }
     }
 }
 
@@ -192,12 +238,12 @@ impl Rule for Bayes {
             normalise(&mut self.probabilities, &self.priors);
         }
         self.seen = Some(seen);
+        self.watch_hands(view, dt);
         let count = view.sights.len();
-        let most = self.now.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let seen = || self.now.iter().zip(&self.reached_for).map(|(now, reached_for)| now + reached_for);
+        let most = seen().fold(f64::NEG_INFINITY, f64::max);
         belief.weights.clear();
-        belief
-            .weights
-            .extend(self.probabilities.iter().zip(&self.now).map(|(p, now)| p * (now - most).exp()));
+        belief.weights.extend(self.probabilities.iter().zip(seen()).map(|(p, seen)| p * (seen - most).exp()));
         normalise(&mut belief.weights, &self.probabilities);
         belief.none = belief.weights.pop().unwrap_or(1.0);
         belief.committed = belief.best().filter(|i| belief.weights[*i] > COMMITTED_FROM);

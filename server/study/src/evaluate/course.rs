@@ -143,7 +143,13 @@ pub(super) fn machine(
 
 pub(super) fn pace(plan: &Plan, conditions: &Conditions, recording: &Recording) -> Pace {
     let seed = seed(recording, "noise");
-    Pace { period: plan.machine.period(), pose_hz: POSE_HZ, noise: conditions.noise, seed }
+    Pace {
+        period: plan.machine.period(),
+        pose_hz: POSE_HZ,
+        noise: conditions.noise,
+        seed,
+        hands: !conditions.without_hands,
+    }
 }
 
 /// Every trial has losses and noise of its own, the same for each rule, number of objects and number of threads.

@@ -70,6 +70,8 @@ pub struct Conditions {
     pub noise: TrackingNoise,
     /// The machine's accelerations, braking included, as a share of the paper's.
     pub acceleration_share: f64,
+    /// Hands are not sent where the recording has them.
+    pub without_hands: bool,
 }
 
 /// Everything that is evaluated.
@@ -166,6 +168,7 @@ impl Conditions {
         loss: 0.0,
         noise: TrackingNoise { position_m: 0.0, rotation_rad: 0.0 },
         acceleration_share: 1.0,
+        without_hands: false,
     };
 
     /// How poses travel.

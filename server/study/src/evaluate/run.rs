@@ -269,6 +269,7 @@ fn conditions_in_words(conditions: &Conditions) -> BTreeMap<&'static str, f64> {
         ("noise_m", conditions.noise.position_m),
         ("noise_rad", conditions.noise.rotation_rad),
         ("acceleration_share", conditions.acceleration_share),
+        ("without_hands", f64::from(u8::from(conditions.without_hands))),
     ]
     .into()
 }

@@ -117,7 +117,8 @@ fn with_horizontal_angles(mut recording: Recording) -> Recording {
     }
     recording.heights = Heights::Missing;
     for frame in &mut recording.frames {
-        (frame.z_m, frame.pitch_rad) = (None, None);
+        // A hand without a height points nowhere.
+        (frame.z_m, frame.pitch_rad, frame.hands) = (None, None, [None; 2]);
     }
     let mut kept: Vec<Target> = Vec::new();
     let merged: Vec<usize> = std::mem::take(&mut recording.targets)

@@ -1,6 +1,7 @@
 //! Reaches of the made-up visitor, in the form of recordings: for machines without any. They are no evidence about
 //! people.
 
+use covr_engine::frames::Point;
 use covr_engine::time::Time;
 
 use crate::trace::{Arena, Frame, Heights, Moments, Recording, Target};
@@ -19,7 +20,7 @@ fn of_visitor(visitor: u64) -> Vec<Recording> {
         .iter()
         .map(|object| {
             let [x, y, z] = [object.position.x(), object.position.y(), object.position.z()];
-            let position = covr_engine::frames::Point::new(x, y, z);
+            let position = Point::new(x, y, z);
             Target {
                 id: object.id.clone(),
                 label: String::new(),
@@ -64,6 +65,7 @@ fn of_visitor(visitor: u64) -> Vec<Recording> {
             z_m: Some(head.z()),
             yaw_rad: Some(view.y.atan2(view.x)),
             pitch_rad: Some(view.z.clamp(-1.0, 1.0).asin()),
+            hands: sample.hands.both().map(|hand| hand.map(|hand| Point::from_vector(hand.vector()))),
         });
     }
     recordings

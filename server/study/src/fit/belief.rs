@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use covr_engine::frames::{Planar, Pose, Room};
 use covr_engine::intention::{Belief, IntentionParameters, RuleName, Sight, View, sights};
-use covr_engine::observation::{PersonId, PoseSample};
+use covr_engine::observation::{Hands, PersonId, PoseSample};
 use covr_engine::person::Person;
 use covr_engine::safety::parameters::Parameters;
 use covr_engine::time::{Span, Time};
@@ -28,7 +28,7 @@ pub struct BeliefLoss {
 struct Watched {
     person: String,
     goal: usize,
-    heads: Vec<(Time, Pose<Room>, Planar)>,
+    heads: Vec<(Time, Pose<Room>, Planar, Hands)>,
     /// Of all targets, head by head.
     sights: Vec<Sight>,
     targets: usize,
@@ -105,21 +105,22 @@ impl Watched {
         let (mut heads, mut seen, mut now) = (Vec::new(), Vec::new(), Vec::new());
         for sample in recording.resampled_between(POSE_HZ, begins, reach) {
             let pose = room_from_trace.pose(&sample.pose);
+            let hands = sample.hands_in(&room_from_trace);
             person.take_pose(
-                PoseSample { taken_at: sample.at, pose, tracked: true, worn: true },
+                PoseSample { taken_at: sample.at, pose, tracked: true, worn: true, hands },
                 &scene,
                 scene.enabled(),
                 &parameters,
             );
             sights(&scene, &priors, scene.enabled(), &pose, &mut now);
             seen.extend_from_slice(&now);
-            heads.push((sample.at, pose, person.velocity()));
+            heads.push((sample.at, pose, person.velocity(), hands));
         }
         if heads.is_empty() {
             return Err(TrialProblem::NoFrames(trial()));
         }
         let last_by = |before_secs: &f64| {
-            heads.iter().rposition(|(at, _, _)| *at <= reach - Span::from_secs(*before_secs))
+            heads.iter().rposition(|(at, ..)| *at <= reach - Span::from_secs(*before_secs))
         };
         let looks = LOOKS_BEFORE_REACH_SECS.iter().filter_map(last_by).collect();
         let mut shown: Vec<Vec<usize>> = objects
@@ -136,14 +137,12 @@ impl Watched {
         let (mut belief, mut view) = (Belief::default(), Vec::new());
         for shown in &self.shown {
             let mut rule = rule.rule(parameters);
-            for (index, (taken_at, head, velocity)) in self.heads.iter().enumerate() {
+            for (index, (taken_at, head, velocity, hands)) in self.heads.iter().enumerate() {
                 let all = &self.sights[index * self.targets..][..self.targets];
                 view.clear();
                 view.extend(shown.iter().map(|target| all[*target]));
-                rule.weigh(
-                    &View { taken_at: *taken_at, head: *head, velocity: *velocity, sights: &view },
-                    &mut belief,
-                );
+                let (taken_at, head, velocity, hands) = (*taken_at, *head, *velocity, *hands);
+                rule.weigh(&View { taken_at, head, velocity, hands, sights: &view }, &mut belief);
                 for _ in self.looks.iter().filter(|look| **look == index) {
                     tally.loss += self.loss_of(&belief, shown);
                     tally.cases += 1;

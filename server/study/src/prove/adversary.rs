@@ -5,7 +5,7 @@ use crate::random::Random;
 use crate::replay::TrueHead;
 use covr_engine::frames::{Floor, Planar, Point, Pose};
 use covr_engine::machine::Travel;
-use covr_engine::observation::{Observation, PersonId, PoseSample};
+use covr_engine::observation::{Hands, Observation, PersonId, PoseSample};
 use covr_engine::scene::SceneSpec;
 use covr_engine::time::{Span, Time};
 use nalgebra::UnitQuaternion;
@@ -132,6 +132,7 @@ impl Adversary {
                 pose: Pose { position, ..pose },
                 tracked,
                 worn: true,
+                hands: Hands::UNKNOWN,
             };
             doings.pose = match self.tracking {
                 Tracking::Good => Some(sample(self.head, true)),

@@ -1,7 +1,7 @@
 //! A headset on virtual time: every pose goes out as a client would write it, and is read as the server would read it.
 
 use covr_engine::frames::{Pose, RigidMap, Room};
-use covr_engine::observation::PoseSample;
+use covr_engine::observation::{Hands, PoseSample};
 use covr_engine::time::Time;
 use covr_wire::client::{Convention, Encoding, Frame, FromClient, HeadPose, decode};
 use covr_wire::convention::ClientFrame;
@@ -20,8 +20,8 @@ impl Headset {
         Self { frame: ClientFrame::new(Convention::Openxr, room_from_tracking), sequence: 0 }
     }
 
-    /// The pose as it arrives in the engine: through the message and back.
-    pub fn seen(&mut self, taken_at: Time, pose: &Pose<Room>) -> PoseSample {
+    /// The pose as it arrives in the engine, with the hands: through the message and back.
+    pub fn seen(&mut self, taken_at: Time, pose: &Pose<Room>, hands: &Hands) -> PoseSample {
         let (position, orientation) = self.frame.client_pose(pose);
         self.sequence = self.sequence.wrapping_add(1);
         let said = FromClient::Pose(HeadPose {
@@ -32,7 +32,7 @@ impl Headset {
             orientation,
             tracked: true,
             worn: true,
-            hands: None,
+            hands: self.frame.client_hands(hands),
         });
         match heard(&said) {
             Some(FromClient::Pose(pose)) => PoseSample {
@@ -40,9 +40,10 @@ impl Headset {
                 pose: self.frame.room_pose(pose.position, pose.orientation),
                 tracked: pose.tracked,
                 worn: pose.worn,
+                hands: self.frame.room_hands(pose.hands),
             },
             // A pose that the protocol would refuse is one that the server never saw: not tracked.
-            _ => PoseSample { taken_at, pose: *pose, tracked: false, worn: true },
+            _ => PoseSample { taken_at, pose: *pose, tracked: false, worn: true, hands: Hands::UNKNOWN },
         }
     }
 }
@@ -65,8 +66,10 @@ mod tests {
             position: Point::new(1.0, 2.0, 1.6),
             orientation: nalgebra::UnitQuaternion::from_euler_angles(0.1, 0.2, 0.7),
         };
-        let seen = Headset::new().seen(Time::ZERO, &pose);
-        assert!(seen.tracked);
+        let hands = Hands { left: None, right: Some(Point::new(1.3, 2.2, 1.1)) };
+        let seen = Headset::new().seen(Time::ZERO, &pose, &hands);
+        assert!(seen.tracked && seen.hands.left.is_none());
+        assert!(seen.hands.right.unwrap().distance_m(&hands.right.unwrap()) < 1e-9);
         assert!(seen.pose.position.distance_m(&pose.position) < 1e-9);
         assert!((seen.pose.view() - pose.view()).norm() < 1e-9);
     }

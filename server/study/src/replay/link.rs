@@ -69,6 +69,7 @@ impl PoseLink {
 mod tests {
     use super::*;
     use covr_engine::frames::{Point, Pose};
+    use covr_engine::observation::Hands;
     use nalgebra::UnitQuaternion;
 
     fn sample(millis: i64) -> PoseSample {
@@ -77,6 +78,7 @@ mod tests {
             pose: Pose { position: Point::new(0.0, 0.0, 1.6), orientation: UnitQuaternion::identity() },
             tracked: true,
             worn: true,
+            hands: Hands::UNKNOWN,
         }
     }
 

@@ -342,6 +342,7 @@ mod tests {
         pose_hz: 75.0,
         noise: TrackingNoise { position_m: 0.0, rotation_rad: 0.0 },
         seed: 1,
+        hands: true,
     };
 
     fn prepared(recording: &Recording) -> Result<Walk<'_>, TrialProblem> {

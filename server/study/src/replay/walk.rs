@@ -3,7 +3,7 @@
 //! rule that reads it.
 
 use covr_engine::frames::{Point, Pose, Room};
-use covr_engine::observation::PoseSample;
+use covr_engine::observation::{Hands, PoseSample};
 use covr_engine::time::{Span, Time};
 use nalgebra::UnitQuaternion;
 
@@ -23,6 +23,8 @@ pub struct Pace {
     pub noise: TrackingNoise,
     /// Decides the noise.
     pub seed: u64,
+    /// The client sends the hands, where the recording has them.
+    pub hands: bool,
 }
 
 /// Independent normal errors of each pose.
@@ -68,7 +70,8 @@ impl<'a> Walk<'a> {
         let poses = recording.resampled_between(pace.pose_hz, begins, ends);
         let poses = poses.map(|sample| {
             let pose = pace.noise.on(room_from_trace.pose(&sample.pose), &mut random);
-            headset.seen(sample.at, &pose)
+            let hands = if pace.hands { sample.hands_in(&room_from_trace) } else { Hands::UNKNOWN };
+            headset.seen(sample.at, &pose, &pace.noise.on_hands(hands, &mut random))
         });
         let poses = poses.collect();
         let truth = recording.resampled_between(1.0 / pace.period.secs(), begins, ends);
@@ -122,18 +125,29 @@ impl TrackingNoise {
         if *self == Self::default() {
             return pose;
         }
+        let position = self.on_point(pose.position, random);
         let mut off = |deviation: f64| deviation * random.normal();
-        let position = Point::new(
-            pose.position.x() + off(self.position_m),
-            pose.position.y() + off(self.position_m),
-            pose.position.z() + off(self.position_m),
-        );
         let turn = UnitQuaternion::from_euler_angles(
             off(self.rotation_rad),
             off(self.rotation_rad),
             off(self.rotation_rad),
         );
         Pose { position, orientation: pose.orientation * turn }
+    }
+}
+
+impl TrackingNoise {
+    fn on_hands(&self, hands: Hands, random: &mut Random) -> Hands {
+        let [left, right] = hands.both().map(|hand| hand.map(|hand| self.on_point(hand, random)));
+        Hands { left, right }
+    }
+
+    fn on_point(&self, point: Point<Room>, random: &mut Random) -> Point<Room> {
+        if self.position_m == 0.0 && self.rotation_rad == 0.0 {
+            return point;
+        }
+        let mut off = || self.position_m * random.normal();
+        Point::new(point.x() + off(), point.y() + off(), point.z() + off())
     }
 }
 
@@ -152,6 +166,7 @@ mod tests {
         pose_hz: 75.0,
         noise: TrackingNoise { position_m: 0.0, rotation_rad: 0.0 },
         seed: 1,
+        hands: true,
     };
 
     /// A person who stands for 4 s, unseen from 2 s to 2.9 s.

@@ -74,6 +74,8 @@ struct Columns {
     z: Option<usize>,
     yaw: Option<usize>,
     pitch: Option<usize>,
+    /// x, y and z of the left and of the right hand.
+    hands: [Option<[usize; 3]>; 2],
 }
 
 impl<'a> Field<'a> {
@@ -126,6 +128,10 @@ impl Columns {
         let names = list.items()?.iter().map(Field::text).collect::<Result<Vec<_>, _>>()?;
         let at = |name: &str| names.iter().position(|n| n == name);
         let needed = |name: &str| at(name).ok_or_else(|| list.bad(format!("`{name}` among the columns")));
+        let hand = |[x, y, z]: [&str; 3]| {
+            let is_there = [x, y, z].iter().any(|name| at(name).is_some());
+            is_there.then(|| Ok([needed(x)?, needed(y)?, needed(z)?])).transpose()
+        };
         Ok(Self {
             count: names.len(),
             t: needed("t_ms")?,
@@ -134,6 +140,10 @@ impl Columns {
             z: at("z_mm"),
             yaw: at("yaw_mrad"),
             pitch: at("pitch_mrad"),
+            hands: [
+                hand(["left_x_mm", "left_y_mm", "left_z_mm"])?,
+                hand(["right_x_mm", "right_y_mm", "right_z_mm"])?,
+            ],
         })
     }
 }
@@ -158,6 +168,15 @@ fn frames(list: &Field<'_>, columns: &Columns) -> Result<Vec<Frame>, BadField> {
                 .map(|n| n * 1e-3)
                 .ok_or_else(|| field().bad("a finite number"))
         };
+        // A hand that is not tracked has no place: null in all three.
+        let hand = |columns: [usize; 3]| {
+            if columns.iter().all(|column| cells[*column].is_null()) {
+                return Ok(None);
+            }
+            let [x, y, z] = columns.map(milli);
+            Ok(Some(Point::new(x?, y?, z?)))
+        };
+        let place = |columns: Option<[usize; 3]>| columns.map_or(Ok(None), hand);
         let at = moment(milli(columns.t)?);
         if let Some(before) = frames.last().filter(|before| at <= before.at) {
             return Err(row().bad(format!("a time after {} ms", before.at.micros() / 1000)));
@@ -169,6 +188,7 @@ fn frames(list: &Field<'_>, columns: &Columns) -> Result<Vec<Frame>, BadField> {
             z_m: columns.z.map(milli).transpose()?,
             yaw_rad: columns.yaw.map(milli).transpose()?,
             pitch_rad: columns.pitch.map(milli).transpose()?,
+            hands: [place(columns.hands[0])?, place(columns.hands[1])?],
         });
     }
     Ok(frames)
@@ -313,6 +333,34 @@ mod tests {
         let walk = recording(walk).unwrap();
         assert_eq!((walk.mode.as_deref(), walk.heights, walk.arena), (Some("Props"), Heights::Missing, None));
         assert_eq!((walk.frames[0].z_m, walk.frames[0].yaw_rad), (None, None));
+    }
+
+    /// A row with the columns of the right hand alone, tracked in the first frame.
+    const WITH_HAND: &str = r#"{"dataset":"lab","trial":"w","user":"u","cols":["t_ms","x_mm","y_mm","right_x_mm","right_y_mm","right_z_mm"],
+        "frames":[[0,0,0,300,-200,1100],[10,0,0,310,-200,1100],[20,0,0,null,null,null]]}"#;
+
+    #[test]
+    fn hands_are_read_where_they_were_tracked_and_resampled_between_two_frames_that_have_them() {
+        let walk = recording(WITH_HAND).unwrap();
+        let rights: Vec<_> = walk.frames.iter().map(|frame| frame.hands[1].map(|hand| hand.x())).collect();
+        assert_eq!(rights, [Some(0.3), Some(0.31), None]);
+        assert!(walk.frames.iter().all(|frame| frame.hands[0].is_none()));
+        let samples: Vec<_> =
+            walk.resampled(200.0).map(|sample| sample.hands[1].map(|hand| hand.x())).collect();
+        assert!((samples[1].unwrap() - 0.305).abs() < 1e-12 && samples[3].is_none(), "{samples:?}");
+        let room = walk.resampled(200.0).next().unwrap().hands_in(&walk.room_from_trace());
+        assert!(room.left.is_none() && (room.right.unwrap().z() - 1.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn half_a_hand_is_refused() {
+        for (from, to, field, expected) in [
+            ("null,null,null", "1,null,null", "frames[2][4]", "a finite number"),
+            (r#""right_z_mm""#, r#""other""#, "cols", "`right_z_mm` among the columns"),
+        ] {
+            let bad = recording(&WITH_HAND.replacen(from, to, 1)).unwrap_err();
+            assert_eq!((bad.field.as_str(), bad.expected.as_str()), (field, expected));
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! A recording at another rate: straight lines between frames, angles the short way round, and nothing across a gap.
 
-use covr_engine::frames::{Point, Pose};
+use covr_engine::frames::{Point, Pose, RigidMap, Room};
+use covr_engine::observation::Hands;
 use covr_engine::time::{Span, Time};
 use nalgebra::UnitQuaternion;
 
@@ -14,6 +15,16 @@ pub struct HeadSample {
     /// Where the head was and where it looked. Without heights it is at [`HEAD_HEIGHT_M`]; without a view axis it
     /// looks where the walk goes.
     pub pose: Pose<Trace>,
+    /// The left and the right hand, each where it was tracked before and after.
+    pub hands: [Option<Point<Trace>>; 2],
+}
+
+impl HeadSample {
+    /// The hands in the room.
+    pub fn hands_in(&self, room_from_trace: &RigidMap<Trace, Room>) -> Hands {
+        let [left, right] = self.hands.map(|hand| hand.map(|hand| room_from_trace.point(&hand)));
+        Hands { left, right }
+    }
 }
 
 /// The samples of a recording, in order of time.
@@ -73,7 +84,7 @@ impl Iterator for Resampled<'_> {
             if before.at > at || after.at - before.at > MOST_GAP {
                 continue;
             }
-            return Some(HeadSample { at, pose: self.between(before, after, at) });
+            return Some(self.between(before, after, at));
         }
     }
 }
@@ -88,7 +99,7 @@ impl Resampled<'_> {
         }
     }
 
-    fn between(&self, before: Frame, after: Frame, at: Time) -> Pose<Trace> {
+    fn between(&self, before: Frame, after: Frame, at: Time) -> HeadSample {
         let gap = (after.at - before.at).secs();
         let share = if gap > 0.0 { (at - before.at).secs() / gap } else { 0.0 };
         let line = |a: f64, b: f64| a + (b - a) * share;
@@ -97,10 +108,15 @@ impl Resampled<'_> {
         let yaw = both(before.yaw_rad, after.yaw_rad)
             .map_or(self.course_rad, |(a, b)| a + short_way_rad(b - a) * share);
         let pitch = both(before.pitch_rad, after.pitch_rad).map_or(0.0, |(a, b)| line(a, b));
-        Pose {
+        let pose = Pose {
             position: Point::new(line(before.x_m, after.x_m), line(before.y_m, after.y_m), z),
             orientation: UnitQuaternion::from_euler_angles(0.0, -pitch, yaw),
-        }
+        };
+        let hands = [0, 1].map(|hand| {
+            let (a, b) = (before.hands[hand]?.vector(), after.hands[hand]?.vector());
+            Some(Point::from_vector(a + (b - a) * share))
+        });
+        HeadSample { at, pose, hands }
     }
 }
 
@@ -123,7 +139,15 @@ mod tests {
 
     fn frame(millis: i64, x_m: f64, yaw_rad: f64) -> Frame {
         let at = Time::ZERO + Span::from_millis(millis);
-        Frame { at, x_m, y_m: 0.0, z_m: Some(1.5), yaw_rad: Some(yaw_rad), pitch_rad: Some(0.5) }
+        Frame {
+            at,
+            x_m,
+            y_m: 0.0,
+            z_m: Some(1.5),
+            yaw_rad: Some(yaw_rad),
+            pitch_rad: Some(0.5),
+            hands: [None; 2],
+        }
     }
 
     fn recording(frames: Vec<Frame>) -> Recording {
@@ -195,6 +219,7 @@ mod tests {
             z_m: None,
             yaw_rad: None,
             pitch_rad: None,
+            hands: [None; 2],
         };
         let recording = recording(vec![
             bare(0, 0.0, 0.0),

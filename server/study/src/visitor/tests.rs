@@ -69,6 +69,45 @@ fn a_reach_ends_an_arms_length_before_the_object_looking_at_it() {
     assert!(distances.iter().all(|d| (0.45..0.75).contains(d)), "{distances:?}");
 }
 
+/// And it is nearly there before: the hand sets out while the head still comes.
+#[test]
+fn a_reach_ends_with_a_hand_at_the_object_and_the_hand_goes_back_to_the_side() {
+    let goals = demo(4).goals;
+    let visit: Vec<_> = demo(4).take(100_000).collect();
+    let off = |sample: &VisitorSample| {
+        let object = goals[sample.goal.unwrap()].position;
+        let hands = sample.hands.both();
+        hands.into_iter().flatten().map(|hand| hand.distance_m(&object)).fold(f64::INFINITY, f64::min)
+    };
+    let mut reaches = 0;
+    for pair in
+        visit.windows(2).filter(|pair| pair[1].phase == Phase::Dwells && pair[0].phase != Phase::Dwells)
+    {
+        // The shoulder is 0.25 m beneath the eyes; what is farther from it than an arm is pointed at.
+        let object = goals[pair[1].goal.unwrap()].position;
+        let shoulder = pair[1].pose.position.vector() - nalgebra::Vector3::z() * 0.25;
+        let beyond_m = ((object.vector() - shoulder).norm() - 0.7).max(0.0);
+        assert!(off(&pair[1]) < beyond_m + 0.02, "{} m off at {:?}", off(&pair[1]), pair[1].at);
+        reaches += 1;
+    }
+    assert!(reaches > 80, "{reaches} reaches");
+    for sample in visit.iter().filter(|sample| sample.phase == Phase::Reads) {
+        for hand in sample.hands.both().into_iter().flatten() {
+            assert!(hand.floor().distance_m(sample.pose.position.floor()) < 0.35, "{sample:?}");
+        }
+    }
+}
+
+#[test]
+fn hands_neither_jump_nor_go_faster_than_hands_do() {
+    for pair in demo(6).take(100_000).collect::<Vec<_>>().windows(2) {
+        for (a, b) in pair[0].hands.both().into_iter().zip(pair[1].hands.both()) {
+            let step_m = a.zip(b).map_or(0.0, |(a, b)| a.distance_m(&b));
+            assert!(step_m * 90.0 < 4.0, "{} m/s at {:?}", step_m * 90.0, pair[1].at);
+        }
+    }
+}
+
 #[test]
 fn the_head_stays_in_the_arena_and_neither_jumps_nor_spins() {
     let visit: Vec<_> = demo(2).take(100_000).collect();

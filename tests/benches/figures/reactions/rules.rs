@@ -8,7 +8,7 @@ use covr_engine::intention::{IntentionParameters, RuleName};
 use covr_engine::machine::{Limits, MachineReport};
 use covr_engine::mode::{Mode, RequestKind};
 use covr_engine::motion::MotionName;
-use covr_engine::observation::{Observation, PersonId, PoseSample};
+use covr_engine::observation::{Hands, Observation, PersonId, PoseSample};
 use covr_engine::safety::parameters::Parameters;
 use covr_engine::safety::separation::KeptFrom;
 use covr_engine::safety::vetted::{Action, Vetted};
@@ -169,7 +169,7 @@ impl Room {
                 orientation: UnitQuaternion::from_euler_angles(0.0, 0.0, 2.2),
             };
             let tracked = self.cause != Some(Cause::Untracked);
-            let sample = PoseSample { taken_at: now, pose, tracked, worn: true };
+            let sample = PoseSample { taken_at: now, pose, tracked, worn: true, hands: Hands::UNKNOWN };
             self.engine.observe(now, Observation::Pose(VISITOR, sample));
         }
         let command = self.engine.step(now);

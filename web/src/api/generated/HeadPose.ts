@@ -34,6 +34,6 @@ tracked: boolean,
  */
 worn: boolean, 
 /**
- * The hands, where known.
+ * The hands, where known: evidence of which object is meant.
  */
 hands?: Hands | null, };

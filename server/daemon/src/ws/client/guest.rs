@@ -268,6 +268,7 @@ impl Guest {
             pose: greeted.frame.room_pose(pose.position, pose.orientation),
             tracked: pose.tracked,
             worn: pose.worn,
+            hands: greeted.frame.room_hands(pose.hands),
         });
         present.link.pose(pose.sequence, pose.client_time_micros, taken_at, received);
         self.poses += 1;

@@ -118,7 +118,10 @@ type Cause = (u8, &'static str, fn(&mut Room));
 fn every_cause_of_a_protective_stop_leads_to_one() {
     let pose = |room: &Room, x: f64, tracked: bool, worn: bool| {
         let pose = Pose { position: Point::new(x, 3.0, 1.6), orientation: UnitQuaternion::identity() };
-        Observation::Pose(VISITOR, PoseSample { taken_at: room.now, pose, tracked, worn })
+        Observation::Pose(
+            VISITOR,
+            PoseSample { taken_at: room.now, pose, tracked, worn, hands: Hands::UNKNOWN },
+        )
     };
     let causes: [Cause; 9] = [
         (2, "no pose yet", |room| room.engine.observe(room.now, Observation::PersonEntered(PersonId(2)))),
