@@ -42,6 +42,16 @@ struct Piece {
     from_secs: f64,
 }
 
+/// A change of velocity: ramp to a peak of acceleration, hold it, ramp to none. Jerks in m/s3, times in s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Ramps {
+    jerk_in: f64,
+    ramp_in: f64,
+    hold: f64,
+    jerk_out: f64,
+    ramp_out: f64,
+}
+
 /// How the column moves when it is told to brake: the worst of it, reaction included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BrakePath {
@@ -50,6 +60,11 @@ pub struct BrakePath {
 }
 
 impl AxisState {
+    /// On at the same acceleration: the same as after no jerk.
+    fn carried(self, t: f64) -> Self {
+        Self { p: self.p + t * (self.v + t * (0.5 * self.a)), v: self.v + t * self.a, a: self.a }
+    }
+
     fn after(self, jerk: f64, t: f64) -> Self {
         Self {
             p: self.p + t * (self.v + t * (0.5 * self.a + t * jerk / 6.0)),
@@ -115,16 +130,25 @@ impl AxisPath {
     /// To `v_target` and no acceleration, in least time within the limits. A reversal brakes to rest first, so that
     /// no braking is carried through zero into speeding up.
     pub fn to_velocity(start: AxisState, v_target: f64, limits: &AxisLimits) -> Self {
-        let reverses = start.v * v_target < 0.0 && start.v.abs() > REVERSES_BELOW_MPS;
-        let v_target = if reverses { 0.0 } else { v_target };
-        let slows = start.v * (v_target - start.v) < 0.0 && start.v * v_target >= 0.0;
-        let most = if slows { limits.braking_mps2 } else { limits.acceleration_mps2 };
-        Self::build(start, None, v_target, most, limits.jerk_mps3)
+        let (v_target, most) = target_and_most(start, v_target, limits);
+        Self::build(start, 0.0, v_target, most, limits.jerk_mps3)
+    }
+
+    /// Where the path to `v_target` is after `secs`: the same as asking the whole path.
+    pub fn towards_velocity(start: AxisState, v_target: f64, limits: &AxisLimits, secs: f64) -> AxisState {
+        let (v_target, most) = target_and_most(start, v_target, limits);
+        let ramps = Ramps::of(start, v_target, most, limits.jerk_mps3);
+        // On the first ramp, where a period mostly ends, the rest of the path need not be known.
+        if secs < ramps.ramp_in {
+            start.after(ramps.jerk_in, secs)
+        } else {
+            Self::of_ramps(start, 0.0, ramps, v_target).at(secs)
+        }
     }
 
     /// To rest as fast as the axis may.
     pub fn brake(start: AxisState, limits: &AxisLimits) -> Self {
-        Self::build(start, None, 0.0, limits.braking_mps2, limits.jerk_mps3)
+        Self::build(start, 0.0, 0.0, limits.braking_mps2, limits.jerk_mps3)
     }
 
     /// To rest with this share of the axis' braking and jerk, so that two axes come to rest together; with all of it
@@ -136,7 +160,7 @@ impl AxisPath {
         if speeds_up || would_run_back || start.a.abs() > limits.braking_mps2 * share {
             return Self::brake(start, limits);
         }
-        Self::build(start, None, 0.0, limits.braking_mps2 * share, limits.jerk_mps3 * share)
+        Self::build(start, 0.0, 0.0, limits.braking_mps2 * share, limits.jerk_mps3 * share)
     }
 
     /// The brake of an axis that, for `reaction_secs` more, accelerates as hard as it may in its direction.
@@ -144,49 +168,32 @@ impl AxisPath {
         let heading = if start.v.abs() > STILL_MPS { start.v } else { start.a };
         let room = ((limits.speed_mps - start.v.abs()) / reaction_secs).max(0.0);
         let push = if heading == 0.0 { 0.0 } else { limits.acceleration_mps2.min(room).copysign(heading) };
-        Self::build(
-            AxisState { a: push, ..start },
-            Some(reaction_secs),
-            0.0,
-            limits.braking_mps2,
-            limits.jerk_mps3,
-        )
+        let start = AxisState { a: push, ..start };
+        Self::build(start, reaction_secs, 0.0, limits.braking_mps2, limits.jerk_mps3)
     }
 
-    fn build(start: AxisState, reaction_secs: Option<f64>, v_target: f64, most: f64, jerk: f64) -> Self {
-        let mut path =
-            Self { pieces: [Piece { start, ..Piece::default() }; 4], end: start, duration_secs: 0.0 };
-        let mut index = 0;
-        if let Some(secs) = reaction_secs {
-            path.push(&mut index, 0.0, secs);
+    /// On at the start's acceleration for `reaction_secs`; then to the target.
+    fn build(start: AxisState, reaction_secs: f64, v_target: f64, most: f64, jerk: f64) -> Self {
+        let ramps = Ramps::of(start.carried(reaction_secs), v_target, most, jerk);
+        Self::of_ramps(start, reaction_secs, ramps, v_target)
+    }
+
+    fn of_ramps(start: AxisState, reaction_secs: f64, ramps: Ramps, v_target: f64) -> Self {
+        let Ramps { jerk_in, ramp_in, hold, jerk_out, ramp_out } = ramps;
+        let reacted = start.carried(reaction_secs);
+        let at_peak = reacted.after(jerk_in, ramp_in);
+        let held = at_peak.carried(hold);
+        let [peaks, leaves] = [reaction_secs + ramp_in, reaction_secs + ramp_in + hold];
+        Self {
+            pieces: [
+                Piece { start, jerk: 0.0, from_secs: 0.0 },
+                Piece { start: reacted, jerk: jerk_in, from_secs: reaction_secs },
+                Piece { start: at_peak, jerk: 0.0, from_secs: peaks },
+                Piece { start: held, jerk: jerk_out, from_secs: leaves },
+            ],
+            end: AxisState { p: held.after(jerk_out, ramp_out).p, v: v_target, a: 0.0 },
+            duration_secs: leaves + ramp_out,
         }
-        let AxisState { v, a, .. } = path.end;
-        // Where the velocity would end if the acceleration ramped to zero from here.
-        let v_ramped_out = v + a * a.abs() / (2.0 * jerk);
-        let way = if v_target >= v_ramped_out { 1.0 } else { -1.0 };
-        let (a, dv) = (a * way, (v_target - v) * way);
-        let unbounded = (jerk * dv + 0.5 * a * a).max(0.0).sqrt();
-        let peak = unbounded.min(most);
-        let ramp_in = (peak - a).abs() / jerk;
-        let ramp_out = peak / jerk;
-        let hold = if unbounded > most {
-            ((dv - 0.5 * (a + peak) * ramp_in - 0.5 * peak * ramp_out) / peak).max(0.0)
-        } else {
-            0.0
-        };
-        path.push(&mut index, (peak - a).signum() * way * jerk, ramp_in);
-        path.push(&mut index, 0.0, hold);
-        path.push(&mut index, -way * jerk, ramp_out);
-        path.end.v = v_target;
-        path.end.a = 0.0;
-        path
-    }
-
-    fn push(&mut self, index: &mut usize, jerk: f64, secs: f64) {
-        self.pieces[*index..].fill(Piece { start: self.end, jerk, from_secs: self.duration_secs });
-        *index += 1;
-        self.end = self.end.after(jerk, secs);
-        self.duration_secs += secs;
     }
 
     /// The state `t` seconds from the start.
@@ -217,6 +224,34 @@ impl AxisPath {
             }
         }
         extent
+    }
+}
+
+/// The velocity to go to first, and the greatest acceleration on the way.
+fn target_and_most(start: AxisState, v_target: f64, limits: &AxisLimits) -> (f64, f64) {
+    let reverses = start.v * v_target < 0.0 && start.v.abs() > REVERSES_BELOW_MPS;
+    let v_target = if reverses { 0.0 } else { v_target };
+    let slows = start.v * (v_target - start.v) < 0.0 && start.v * v_target >= 0.0;
+    (v_target, if slows { limits.braking_mps2 } else { limits.acceleration_mps2 })
+}
+
+impl Ramps {
+    fn of(from: AxisState, v_target: f64, most: f64, jerk: f64) -> Self {
+        let AxisState { v, a, .. } = from;
+        // Where the velocity would end if the acceleration ramped to zero from here.
+        let v_ramped_out = v + a * a.abs() / (2.0 * jerk);
+        let way = if v_target >= v_ramped_out { 1.0 } else { -1.0 };
+        let (a, dv) = (a * way, (v_target - v) * way);
+        let unbounded = (jerk * dv + 0.5 * a * a).max(0.0).sqrt();
+        let peak = unbounded.min(most);
+        let ramp_in = (peak - a).abs() / jerk;
+        let ramp_out = peak / jerk;
+        let hold = if unbounded > most {
+            ((dv - 0.5 * (a + peak) * ramp_in - 0.5 * peak * ramp_out) / peak).max(0.0)
+        } else {
+            0.0
+        };
+        Self { jerk_in: (peak - a).signum() * way * jerk, ramp_in, hold, jerk_out: -way * jerk, ramp_out }
     }
 }
 
@@ -252,7 +287,7 @@ impl BrakePath {
     pub fn abrupt(state: &State, limits: &Limits) -> Self {
         let axis = |start: AxisState, limits: &AxisLimits| {
             let start = AxisState { a: 0.0, ..start };
-            AxisPath::build(start, None, 0.0, limits.braking_mps2, ABRUPT_MPS3)
+            AxisPath::build(start, 0.0, 0.0, limits.braking_mps2, ABRUPT_MPS3)
         };
         Self { x: axis(state.x, &limits.x), y: axis(state.y, &limits.y) }
     }
@@ -327,7 +362,56 @@ mod tests {
         assert!(path.extent_m().0 > -1e-9 && path.at(9.0).p < 0.01, "{path:?}");
     }
 
+    /// The profile as it is told in words, a piece after the other, from where the last one ended.
+    fn piece_by_piece(start: AxisState, reaction_secs: f64, v_target: f64, most: f64, jerk: f64) -> AxisPath {
+        let mut pieces = Vec::new();
+        let (mut end, mut duration_secs) = (start, 0.0);
+        let mut push = |jerk: f64, secs: f64| {
+            pieces.push(Piece { start: end, jerk, from_secs: duration_secs });
+            end = end.after(jerk, secs);
+            duration_secs += secs;
+            end
+        };
+        let AxisState { v, a, .. } = push(0.0, reaction_secs);
+        let way = if v_target >= v + a * a.abs() / (2.0 * jerk) { 1.0 } else { -1.0 };
+        let (a, dv) = (a * way, (v_target - v) * way);
+        let unbounded = (jerk * dv + 0.5 * a * a).max(0.0).sqrt();
+        let peak = unbounded.min(most);
+        let (ramp_in, ramp_out) = ((peak - a).abs() / jerk, peak / jerk);
+        let hold = (dv - 0.5 * (a + peak) * ramp_in - 0.5 * peak * ramp_out) / peak;
+        push((peak - a).signum() * way * jerk, ramp_in);
+        push(0.0, if unbounded > most { hold.max(0.0) } else { 0.0 });
+        push(-way * jerk, ramp_out);
+        let pieces = [pieces[0], pieces[1], pieces[2], pieces[3]];
+        AxisPath { pieces, end: AxisState { v: v_target, a: 0.0, ..end }, duration_secs }
+    }
+
     proptest! {
+        /// Bit for bit: what is certified and what is driven may not come to depend on how it is written down.
+        #[test]
+        fn a_path_is_its_pieces_one_after_the_other(
+            (p, v, a) in (-4.0..4.0f64, -1.6..1.6f64, -3.0..3.0f64), target in -1.6..1.6f64,
+            reaction_secs in prop_oneof![Just(0.0), 0.0..0.2f64], most in 0.1..3.0f64,
+            jerk in prop_oneof![Just(80.0), 1.0..200.0f64, Just(ABRUPT_MPS3)],
+        ) {
+            let start = AxisState { p, v, a };
+            let path = AxisPath::build(start, reaction_secs, target, most, jerk);
+            let expected = piece_by_piece(start, reaction_secs, target, most, jerk);
+            prop_assert_eq!(path, expected);
+        }
+
+        /// Bit for bit, whichever piece it ends in.
+        #[test]
+        fn a_step_along_a_path_is_where_the_whole_path_is(
+            (p, v, a) in (-4.0..4.0f64, -1.2..1.2f64, -2.5..2.5f64), target in -1.2..1.2f64,
+            secs in prop_oneof![Just(0.0), Just(0.004), Just(0.013_334), 0.0..1.5f64],
+        ) {
+            let start = AxisState { p, v, a };
+            let step = AxisPath::towards_velocity(start, target, &LIMITS, secs);
+            let whole = AxisPath::to_velocity(start, target, &LIMITS).at(secs);
+            prop_assert_eq!([step.p, step.v, step.a].map(f64::to_bits), [whole.p, whole.v, whole.a].map(f64::to_bits));
+        }
+
         #[test]
         fn every_path_ends_at_its_target_within_limits(
             v in -1.1..1.1f64, a in -2.5..2.5f64, target in -1.1..1.1f64,

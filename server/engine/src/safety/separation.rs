@@ -104,6 +104,9 @@ impl Separation<'_> {
     pub fn certify(&self, state: &State) -> Result<(), Conflict> {
         let path = BrakePath::worst(state, self.limits, self.parameters.reaction.secs());
         self.certify_travel(state, &path)?;
+        if rests(state) {
+            return Ok(());
+        }
         // A control thread that stalls leaves the column to itself for a reaction.
         let reaction_secs = self.parameters.reaction.secs();
         let speed = state.speed_before_brake_mps(self.limits, reaction_secs) + MACHINE_OVERSHOOT_MPS;
@@ -157,13 +160,12 @@ impl Separation<'_> {
         speed_mps: f64,
         allowance_m: f64,
     ) -> Result<(), Conflict> {
-        let velocity = state.velocity();
-        if velocity.norm() < AT_REST_MPS && state.acceleration().norm() == 0.0 {
+        if rests(state) {
             return Ok(());
         }
         for threat in self.threats {
             if let Some(contact) = self.contact.filter(|contact| contact.person == threat.person) {
-                self.certify_contact(&contact, threat, velocity, path, allowance_m)?;
+                self.certify_contact(&contact, threat, state.velocity(), path, allowance_m)?;
                 continue;
             }
             let r = self.radius_m(threat, speed_mps);
@@ -180,7 +182,9 @@ impl Separation<'_> {
                 let (footprint, centre) = (self.scene.footprint(), state.position());
                 let outside = keep_out.distance_m(footprint, centre) > self.parameters.radius_m;
                 outside
-                    && keep_out.away(footprint, centre).is_some_and(|away| self.is_retreat(velocity, away))
+                    && keep_out
+                        .away(footprint, centre)
+                        .is_some_and(|away| self.is_retreat(state.velocity(), away))
             };
             if let Err((distance_m, required_m)) = keeps(path, 0.0, distance, required)
                 && !leaves()
@@ -247,6 +251,11 @@ impl Separation<'_> {
         speed <= self.parameters.retreat_speed_mps
             && velocity.dot(away) >= speed * self.parameters.retreat_cone_rad.cos()
     }
+}
+
+/// At rest everything is allowed.
+fn rests(state: &State) -> bool {
+    state.velocity().norm() < AT_REST_MPS && state.acceleration().norm() == 0.0
 }
 
 /// The distance stays above what is required along the whole path; else where it first does not.
