@@ -204,6 +204,11 @@ impl Planar {
     /// Turned counter-clockwise by `angle_rad`.
     pub fn turned(self, angle_rad: f64) -> Self {
         let (sin, cos) = angle_rad.sin_cos();
+        self.turned_by(sin, cos)
+    }
+
+    /// Turned to the left by the angle of this sine and cosine.
+    pub fn turned_by(self, sin: f64, cos: f64) -> Self {
         Self { x: cos * self.x - sin * self.y, y: sin * self.x + cos * self.y }
     }
 

@@ -10,6 +10,8 @@ pub mod proxy;
 pub mod standing;
 pub mod way;
 
+use std::sync::LazyLock;
+
 use crate::frames::{Floor, Planar};
 use crate::machine::{AxisLimits, Limits, Travel};
 use crate::safety::separation::Threat;
@@ -77,9 +79,9 @@ impl Proposals {
         let cruise = cruise.min(speed_cap_mps);
         // Aside means away from the person first.
         let outward = if way.side == 0.0 { 1.0 } else { way.side };
-        for (angle_deg, share) in FAN {
+        for (&(angle_deg, share), (sin, cos)) in FAN.iter().zip(TURNS.iter()) {
             for side in [outward, -outward] {
-                let velocity = way.heading.turned(side * f64::to_radians(angle_deg)) * (share * cruise);
+                let velocity = way.heading.turned_by(side * sin, *cos) * (share * cruise);
                 self.velocities.push(along_the_walls(velocity, column, inside));
                 if angle_deg == 0.0 {
                     break;
@@ -144,6 +146,9 @@ const FAN: [(f64, f64); 17] = [
     (90.0, 0.35),
     (110.0, 0.6),
 ];
+/// Sine and cosine of the fan's angles.
+static TURNS: LazyLock<[(f64, f64); FAN.len()]> =
+    LazyLock::new(|| FAN.map(|(deg, _)| deg.to_radians().sin_cos()));
 /// On the way around somebody, m/s.
 const CRUISE_MPS: f64 = 1.1;
 /// Aside of a straight way at least, m/s.
@@ -176,6 +181,19 @@ mod tests {
         proposals.fill(Planar::new(1.1, 0.4), 0.3, column, target, &[threat(1.3, 0.5)], &ROOM);
         assert!(proposals.velocities().len() > FAN.len());
         assert!(proposals.velocities().iter().all(|v| v.norm() <= 0.3 + 1e-12));
+    }
+
+    #[test]
+    fn the_fan_turns_as_its_angles_do() {
+        let heading = Planar::new(0.6, -0.8);
+        for ((angle_deg, _), (sin, cos)) in FAN.into_iter().zip(*TURNS) {
+            for side in [1.0, -1.0] {
+                assert_eq!(
+                    heading.turned_by(side * sin, cos),
+                    heading.turned(side * f64::to_radians(angle_deg))
+                );
+            }
+        }
     }
 
     #[test]
