@@ -1,4 +1,5 @@
-//! How fast recorded reaches are replayed: `cargo run --release -p covr-study --example replay_speed -- TRACES`.
+//! How fast recorded reaches are replayed: `cargo run --release -p covr-study --example replay_speed -- TRACES`, with
+//! `ideal` or `simulated` before the traces on that machine alone.
 //!
 //! The paper's sweep is 13 values of w over 300 trials; it took its authors over 17 hours.
 
@@ -15,12 +16,15 @@ const VALUES: usize = 13;
 const TRIALS: usize = 300;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let paths: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
+    let mut words: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
+    let named = words.first().and_then(|word| MachineKind::parse(word.to_str()?).ok());
+    let paths = words.split_off(usize::from(named.is_some()));
+    let machines = named.map_or(vec![MachineKind::Ideal, MachineKind::Simulated], |machine| vec![machine]);
     let mut out = std::io::stdout().lock();
     let begins = Instant::now();
     let subjects = Subjects::read(&paths)?.first(TRIALS);
     writeln!(out, "reading: {:.2} s", begins.elapsed().as_secs_f64())?;
-    for machine in [MachineKind::Ideal, MachineKind::Simulated] {
+    for machine in machines {
         let begins = Instant::now();
         let plan = Plan {
             rules: vec![RuleChoice::Rule(RuleName::Paper)],

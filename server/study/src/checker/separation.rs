@@ -14,9 +14,10 @@ use std::collections::BTreeMap;
 
 use covr_engine::frames::Floor;
 use covr_engine::observation::PersonId;
+use covr_engine::scene::KeepOutShape;
 use covr_engine::time::{Span, Time};
 
-use super::geometry::{Gap, to_point, to_shape};
+use super::geometry::{Gap, Rectangle, to_point, to_shape};
 use super::{MOVING_MPS, Moment, Rules};
 use braking::Braking;
 pub(super) use braking::Shortfall;
@@ -100,11 +101,18 @@ struct Sighting<'a> {
     head: Option<Floor>,
     v_h_mps: f64,
     gap: Gap,
-    distance_at: Box<dyn Fn(Floor) -> f64 + 'a>,
+    place: Place<'a>,
+}
+
+/// Where a subject is.
+#[derive(Debug, Clone, Copy)]
+enum Place<'a> {
+    Head(Floor),
+    Shape(&'a KeepOutShape),
 }
 
 /// What every subject's judgement at this tick needs.
-struct Scales {
+struct Scales<'a> {
     at: Time,
     speed_mps: f64,
     speed_before_mps: f64,
@@ -112,6 +120,7 @@ struct Scales {
     /// One reaction at the greatest acceleration and one braking, from now.
     allowance: Span,
     braking: Braking,
+    footprint: &'a [Rectangle],
 }
 
 impl SeparationWatch {
@@ -152,7 +161,7 @@ impl SeparationWatch {
         found
     }
 
-    fn scales(&self, rules: &Rules, moment: &Moment<'_>) -> Scales {
+    fn scales<'a>(&self, rules: &'a Rules, moment: &Moment<'_>) -> Scales<'a> {
         let velocity = moment.column.velocity;
         let reaction = rules.reaction;
         let brake_secs = |speed: f64, own: &covr_engine::machine::AxisLimits| {
@@ -169,11 +178,12 @@ impl SeparationWatch {
             reaction,
             allowance: Span::from_secs(reaction.secs() + longest),
             braking: Braking::new(moment.column, &rules.limits),
+            footprint: &rules.footprint,
         }
     }
 
     /// Bring what is remembered of a subject up to date, and open the allowances that it gives rise to.
-    fn watch(&mut self, sighting: &Sighting<'_>, rules: &Rules, moment: &Moment<'_>, scales: &Scales) {
+    fn watch(&mut self, sighting: &Sighting<'_>, rules: &Rules, moment: &Moment<'_>, scales: &Scales<'_>) {
         let person = moment.persons.iter().find(|person| sighting.subject == Subject::Person(person.id));
         let at_object = |before: bool| {
             let within = if before { LEAVES_OBJECT_M } else { COMES_TO_OBJECT_M };
@@ -232,7 +242,7 @@ impl SeparationWatch {
     }
 
     /// The rule in full, and the allowances.
-    fn by_the_rule(&mut self, sighting: &Sighting<'_>, scales: &Scales) -> Standing {
+    fn by_the_rule(&mut self, sighting: &Sighting<'_>, scales: &Scales<'_>) -> Standing {
         let Some(watched) = self.watched.get_mut(&sighting.subject) else { return Standing::Legal };
         let shortfall =
             if scales.speed_mps <= MOVING_MPS { None } else { scales.shortfall(sighting, watched.zone) };
@@ -265,7 +275,7 @@ impl SeparationWatch {
         sighting: &Sighting<'_>,
         standing: &Standing,
         moment: &Moment<'_>,
-        scales: &Scales,
+        scales: &Scales<'_>,
     ) -> Standing {
         let Some(watched) = self.watched.get_mut(&sighting.subject) else { return standing.clone() };
         let Gap { distance_m, away } = sighting.gap;
@@ -293,7 +303,7 @@ const RISE_MPS: f64 = 0.01;
 
 impl Grace {
     /// Within the reaction anything; after it the column must brake.
-    fn permits(&mut self, scales: &Scales) -> bool {
+    fn permits(&mut self, scales: &Scales<'_>) -> bool {
         if scales.at <= self.onset + scales.reaction {
             return true;
         }
@@ -304,14 +314,24 @@ impl Grace {
     }
 }
 
-impl Scales {
+impl Place<'_> {
+    fn gap(self, footprint: &[Rectangle], centre: Floor) -> Gap {
+        match self {
+            Self::Head(head) => to_point(footprint, centre, head),
+            Self::Shape(shape) => to_shape(footprint, centre, shape),
+        }
+    }
+}
+
+impl Scales<'_> {
     fn shortfall(&self, sighting: &Sighting<'_>, zone: Zone) -> Option<Shortfall> {
         let radius_m = match zone {
             Zone::AtObject if self.speed_mps <= AT_OBJECT_MPS + 1e-9 => AT_OBJECT_RADIUS_M,
             Zone::AtObject | Zone::Open => OPEN_RADIUS_M,
             Zone::Low => LOW_RADIUS_M,
         };
-        self.braking.shortfall(&sighting.distance_at, radius_m, sighting.v_h_mps)
+        let distance_m = |centre: Floor| sighting.place.gap(self.footprint, centre).distance_m;
+        self.braking.shortfall(distance_m, radius_m, sighting.v_h_mps)
     }
 }
 
@@ -323,16 +343,16 @@ fn sightings<'a>(rules: &'a Rules, moment: &Moment<'_>) -> Vec<Sighting<'a>> {
             subject: Subject::Person(person.id),
             head: Some(head),
             v_h_mps: rules.v_h_mps,
-            gap: to_point(&rules.footprint, centre, head),
-            distance_at: Box::new(move |c| to_point(&rules.footprint, c, head).distance_m),
+            gap: Place::Head(head).gap(&rules.footprint, centre),
+            place: Place::Head(head),
         }
     });
     let keep_outs = rules.keep_outs.iter().enumerate().map(|(i, shape)| Sighting {
         subject: Subject::KeepOut(i),
         head: None,
         v_h_mps: 0.0,
-        gap: to_shape(&rules.footprint, centre, shape),
-        distance_at: Box::new(move |c| to_shape(&rules.footprint, c, shape).distance_m),
+        gap: Place::Shape(shape).gap(&rules.footprint, centre),
+        place: Place::Shape(shape),
     });
     persons.chain(keep_outs).collect()
 }

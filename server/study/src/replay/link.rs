@@ -22,6 +22,7 @@ pub struct PoseLink {
     profile: LinkProfile,
     random: Random,
     under_way: Vec<Parcel>,
+    arrived: Vec<Parcel>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +43,7 @@ impl LinkProfile {
 impl PoseLink {
     /// An empty link.
     pub fn new(profile: LinkProfile, random: Random) -> Self {
-        Self { profile, random, under_way: Vec::new() }
+        Self { profile, random, under_way: Vec::new(), arrived: Vec::new() }
     }
 
     /// Put a pose on its way.
@@ -56,12 +57,11 @@ impl PoseLink {
     }
 
     /// What has arrived by `now`, in the order of arrival.
-    pub fn due(&mut self, now: Time) -> Vec<(PersonId, PoseSample)> {
-        let (mut arrived, under_way): (Vec<_>, Vec<_>) =
-            self.under_way.drain(..).partition(|parcel| parcel.due <= now);
-        self.under_way = under_way;
-        arrived.sort_by_key(|parcel| parcel.due);
-        arrived.into_iter().map(|parcel| (parcel.person, parcel.sample)).collect()
+    pub fn due(&mut self, now: Time) -> impl Iterator<Item = (PersonId, PoseSample)> + '_ {
+        self.arrived.clear();
+        self.arrived.extend(self.under_way.extract_if(.., |parcel| parcel.due <= now));
+        self.arrived.sort_by_key(|parcel| parcel.due);
+        self.arrived.iter().map(|parcel| (parcel.person, parcel.sample))
     }
 }
 
@@ -91,7 +91,7 @@ mod tests {
             if now % 10 == 0 && now < count * 10 {
                 link.send(at, PersonId(1), sample(now));
             }
-            arrivals.extend(link.due(at).into_iter().map(|(_, s)| (s.taken_at.micros() / 1000, now)));
+            arrivals.extend(link.due(at).map(|(_, s)| (s.taken_at.micros() / 1000, now)));
         }
         arrivals
     }

@@ -67,8 +67,10 @@ impl Braking {
         let slack = |found: &Shortfall| found.distance_m - found.required_m;
         let steepest = self.velocity.norm() + v_h_mps;
         let (first, last) = (at(0.0), at(self.rest_secs()));
-        let mut open = vec![(first, last)];
-        while let Some((early, late)) = open.pop() {
+        // Mostly one look is enough: nothing is set aside then.
+        let mut aside = Vec::new();
+        let mut open = Some((first, last));
+        while let Some((early, late)) = open.take().or_else(|| aside.pop()) {
             if let Some(failed) = [early, late].into_iter().find(|end| slack(end) <= 0.0) {
                 return Some(failed);
             }
@@ -76,8 +78,8 @@ impl Braking {
             let least_between = 0.5 * (slack(&early) + slack(&late) - steepest * width);
             if least_between <= 0.0 && width > FINEST_SECS {
                 let middle = at(0.5 * (early.s_secs + late.s_secs));
-                open.push((middle, late));
-                open.push((early, middle));
+                aside.push((middle, late));
+                open = Some((early, middle));
             }
         }
         None
