@@ -10,6 +10,7 @@ mod bounded;
 mod course;
 mod draw;
 mod explain;
+mod offsets;
 mod plan;
 mod reliability;
 mod row;

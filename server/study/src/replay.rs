@@ -35,7 +35,7 @@ pub use belief::{BeliefThen, BeliefTold, LOOKS_BEFORE_REACH_SECS};
 pub use foretold::FORETOLD_BEFORE_REACH_SECS;
 pub use link::{LinkProfile, PoseLink};
 pub use session::{SessionReplay, VisitPlan};
-pub use trial::{Conduct, Glimpse, ReachTrial, TrialOutcome, TrialProblem};
+pub use trial::{Conduct, Glimpse, ReachTrial, TrialOutcome, TrialProblem, WithOffset};
 pub use walk::{Pace, TrackingNoise, Walk};
 
 /// Engine, machine, link and checkers, stepping together.

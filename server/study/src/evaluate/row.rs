@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::blame::Cause;
+use super::offsets::Offsets;
 use super::plan::SeparationChoice;
 use super::reliability::{Bin, calibration_error, reliability};
 use crate::checker::Verdict;
@@ -125,6 +126,16 @@ pub struct Row {
     pub in_time_came_true: BTreeMap<String, f64>,
     /// Mean squared error of the goal's `in_time_probability` (Brier 1950), by seconds before the reach.
     pub in_time_brier: BTreeMap<String, f64>,
+    /// Share of trials in which the engine offered an `offset_m` for the goal, by seconds before the reach.
+    pub offset_offered: BTreeMap<String, f64>,
+    /// Share served by a client that shifts the goal by what was offered then, and shifts nothing where nothing was.
+    pub success_with_offset: BTreeMap<String, f64>,
+    /// Failed trials that are served so.
+    pub saved_by_offset: BTreeMap<String, usize>,
+    /// Mean distance of the column at the reach from the goal, where an offset was offered and the shifted goal served, m.
+    pub distance_without_offset_m: BTreeMap<String, f64>,
+    /// The same from the shifted goal, m.
+    pub distance_with_offset_m: BTreeMap<String, f64>,
     /// Failed trials by cause; empty where nobody looked for it.
     pub blame: BTreeMap<&'static str, u64>,
     /// Of the rule `bound` alone: trials that were found to be possible, and those of which it is not known.
@@ -225,6 +236,7 @@ impl Row {
         }
         let reliability = reliability(&outcomes);
         let said = Foretelling::of(&outcomes);
+        let offsets = Offsets::of(&outcomes);
         Self {
             file: key.file,
             task: key.task,
@@ -267,6 +279,11 @@ impl Row {
             late_came_true: said.late_came_true,
             in_time_came_true: said.in_time_came_true,
             in_time_brier: said.brier,
+            offset_offered: offsets.offered,
+            success_with_offset: offsets.success,
+            saved_by_offset: offsets.saved,
+            distance_without_offset_m: offsets.distance_without_m,
+            distance_with_offset_m: offsets.distance_with_m,
             blame,
             not_excluded,
             parameter: None,

@@ -84,6 +84,7 @@ pub fn terminal(evaluation: &Evaluation) -> String {
     }
     text += &causes(evaluation);
     text += &foretold(evaluation);
+    text += &offsets(evaluation);
     text += &bounds(evaluation);
     text += &goals(evaluation);
     let as_recorded =
@@ -250,6 +251,32 @@ fn foretold(evaluation: &Evaluation) -> String {
     text
 }
 
+/// What a client that follows the offered offsets would have had of them.
+fn offsets(evaluation: &Evaluation) -> String {
+    let mut text = String::new();
+    for row in evaluation.whole_files().filter(|row| row.offset_offered.values().any(|share| *share > 0.0)) {
+        let Line { file, rule, motion, separation, prior, draw, .. } = line(row);
+        let _ = write!(text, "offset {file} {rule} {motion} {separation} {prior} {draw}:");
+        for (number, (before, offered)) in row.offset_offered.iter().enumerate() {
+            let _ = write!(
+                text,
+                "{} {before} s before offered {:.1} %, saves {} of {} late",
+                if number > 0 { ";" } else { "" },
+                100.0 * offered,
+                row.saved_by_offset.get(before).copied().unwrap_or_default(),
+                row.trials - row.successes,
+            );
+            let distances =
+                row.distance_without_offset_m.get(before).zip(row.distance_with_offset_m.get(before));
+            if let Some((without, with)) = distances {
+                let _ = write!(text, ", {:.1} cm off become {:.1}", 100.0 * without, 100.0 * with);
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
 impl Evaluation {
     /// The pools of whole files: every task together where there are several.
     fn whole_files(&self) -> impl Iterator<Item = &Row> {
@@ -278,7 +305,17 @@ const WRONG_COSTS: f64 = 5.0;
 /// From the column to the goal at the touch, m.
 const TOUCH_M: f64 = 0.005;
 /// Keys of a row that are looked at [`FORETOLD_BEFORE_REACH_SECS`] before the reach.
-const FORETOLD: [&str; 4] = ["said_late", "late_came_true", "in_time_came_true", "in_time_brier"];
+const FORETOLD: [&str; 9] = [
+    "said_late",
+    "late_came_true",
+    "in_time_came_true",
+    "in_time_brier",
+    "offset_offered",
+    "success_with_offset",
+    "saved_by_offset",
+    "distance_without_offset_m",
+    "distance_with_offset_m",
+];
 
 /// Names and values of a row, moments and intervals spread.
 fn flat(row: &Row) -> Result<Vec<(String, String)>, serde_json::Error> {

@@ -93,12 +93,26 @@ pub struct TrialOutcome {
     pub belief: BeliefTold,
     /// What was foretold of the goal, [`FORETOLD_BEFORE_REACH_SECS`] before the reach; none before the beginning.
     pub foretold: [Option<Foretold>; FORETOLD_BEFORE_REACH_SECS.len()],
+    /// What would have come of it had the client shifted the goal by the offset that was offered then; none before the
+    /// beginning.
+    pub with_offset: [Option<WithOffset>; FORETOLD_BEFORE_REACH_SECS.len()],
     /// Virtual time, s.
     pub simulated_secs: f64,
     /// What the checker says of the true motion.
     pub true_verdict: Verdict,
     /// And of the commanded one.
     pub commanded_verdict: Verdict,
+}
+
+/// What would have come of a reach with the goal shifted by the offset that was offered, where one was.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WithOffset {
+    /// One was.
+    pub offered: bool,
+    /// The column was in place for the shifted goal, at rest.
+    pub success: bool,
+    /// Distance of the column's centre from the shifted goal's place, m.
+    pub distance_at_reach_m: f64,
 }
 
 impl TrialOutcome {
@@ -115,6 +129,7 @@ impl TrialOutcome {
             proxy_distance_m: 0.0,
             belief: BeliefTold::default(),
             foretold: Default::default(),
+            with_offset: Default::default(),
             simulated_secs,
             true_verdict: Verdict::default(),
             commanded_verdict: Verdict::default(),

@@ -10,7 +10,7 @@ use covr_engine::time::{Span, Time};
 use super::Stepped;
 use super::belief::BeliefWatch;
 use super::foretold::ForetoldWatch;
-use super::trial::TrialOutcome;
+use super::trial::{TrialOutcome, WithOffset};
 use crate::checker::Verdict;
 
 /// Watches one reach. Times are the recording's.
@@ -23,7 +23,7 @@ pub(super) struct ReachWatch {
     before: Option<Floor>,
     arrived_at: Option<Time>,
     fast_at: Option<Time>,
-    last: (f64, Time),
+    last: (Planar, Time),
     column_travel_m: f64,
     peaks: Peaks,
     proxy_way: (f64, u32),
@@ -41,7 +41,7 @@ impl ReachWatch {
             before: None,
             arrived_at: None,
             fast_at: None,
-            last: (f64::INFINITY, Time::ZERO),
+            last: (Planar::new(f64::INFINITY, f64::INFINITY), Time::ZERO),
             column_travel_m: 0.0,
             peaks: Peaks { greatest: [0.0; 3], before: None, period },
             proxy_way: (0.0, 0),
@@ -66,7 +66,7 @@ impl ReachWatch {
         }
         let distance_m = truth.position.distance_m(self.place);
         self.arrived_at = if distance_m <= WITHIN_M && !moves { self.arrived_at.or(Some(at)) } else { None };
-        self.last = (distance_m, at);
+        self.last = (truth.position - self.place, at);
     }
 
     /// What happened in the engine.
@@ -80,11 +80,19 @@ impl ReachWatch {
 
     /// The hand has arrived.
     pub fn outcome(self, true_verdict: Verdict, commanded_verdict: Verdict) -> TrialOutcome {
-        let (distance_at_reach_m, ended) = self.last;
+        let (off, ended) = self.last;
+        let distance_at_reach_m = off.norm();
         let within_10cm = distance_at_reach_m <= WITHIN_M;
+        let foretold = self.foretold.told();
         let calm = self.fast_at.is_none_or(|fast_at| ended - fast_at >= CALM_FOR);
         TrialOutcome {
             success: within_10cm && calm,
+            with_offset: foretold.map(|then| {
+                let offset = then?.offset;
+                let distance_at_reach_m = (off - offset.unwrap_or(Planar::ZERO)).norm();
+                let success = distance_at_reach_m <= WITHIN_M && calm;
+                Some(WithOffset { offered: offset.is_some(), success, distance_at_reach_m })
+            }),
             within_10cm,
             distance_at_reach_m,
             in_place_before_reach_secs: self.arrived_at.map_or(0.0, |at| (ended - at).secs()),
@@ -93,7 +101,7 @@ impl ReachWatch {
             peaks: self.peaks.greatest,
             proxy_distance_m: self.proxy_way.0 / f64::from(self.proxy_way.1.max(1)),
             belief: self.belief.told(),
-            foretold: self.foretold.told(),
+            foretold,
             simulated_secs: self.began.map_or(0.0, |began| (ended - began).secs()),
             true_verdict,
             commanded_verdict,
