@@ -1,23 +1,29 @@
 //! `covr fit`: the parameters of an intention rule that suit recorded people, judged on people left out.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 use covr_engine::intention::{IntentionParameters, RuleName};
 use covr_engine::motion::MotionName;
-use covr_study::evaluate::{MachineKind, Objects, Plan, RuleChoice, Subjects, motion};
+use covr_study::evaluate::{
+    Draw, EvaluationProblem, MachineKind, Objects, Plan, Prior, RuleChoice, Subjects, evaluate_by_person,
+    json, motion, terminal,
+};
 use covr_study::fit::{
     BeliefLoss, FailureLoss, Fit as Found, Fitted, FittedOn, Objective, PARAMETERS, Parameter, ParameterFile,
-    Tally, fit, of_rule, sweep,
+    Start, Tally, fit, of_rule, sweep,
 };
 use covr_study::trace::{Recording, Recordings, trace_files};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::clock;
 use crate::config::Config;
+use crate::evaluate::bar as trials;
 
 /// Fit the parameters of an intention rule to recorded people, and judge them on people left out.
 #[derive(Debug, Clone, Args)]
@@ -47,12 +53,28 @@ pub struct Fit {
     /// People by name; every one when not given.
     #[arg(long, value_delimiter = ',')]
     pub people: Vec<String>,
+    /// Scenario priors, for the objective success and --served: none, right, wrong.
+    #[arg(long, value_delimiter = ',', default_value = "none", value_parser = Prior::parse)]
+    pub prior: Vec<Prior>,
+    /// How distractors are drawn, for the same: hash, same-wall.
+    #[arg(long, value_delimiter = ',', default_value = "hash", value_parser = Draw::parse)]
+    pub draw: Vec<Draw>,
+    /// Where the search begins: the rule's default, which may have been found on the same people, or the middle of every range.
+    #[arg(long, value_enum, default_value_t = StartFrom::Default)]
+    pub start: StartFrom,
     /// Groups of people that are left out in turn; 0 for none.
     #[arg(long, default_value_t = 5)]
     pub folds: usize,
     /// Instead of a search, so many values of one parameter from end to end, such as paper.distance_share=13.
     #[arg(long, value_parser = swept)]
     pub sweep: Option<(&'static Parameter, usize)>,
+    /// Then replay every reach through the whole loop with parameters that were not fitted to its person, and say how many were
+    /// served; beside it those by default, and those that were fitted to everybody.
+    #[arg(long, conflicts_with = "sweep")]
+    pub served: bool,
+    /// Write the table of the people left out as JSON to this file, as `covr evaluate` does.
+    #[arg(long, requires = "served")]
+    pub json: Option<PathBuf>,
     /// Write the parameters to this file.
     #[arg(long, conflicts_with = "sweep")]
     pub out: Option<PathBuf>,
@@ -68,6 +90,15 @@ pub enum Aim {
     LogLoss,
     /// The share of reaches served.
     Success,
+}
+
+/// Where a search begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum StartFrom {
+    /// At the rule's default.
+    Default,
+    /// In the middle of every range.
+    Middle,
 }
 
 /// The report: what goes to standard output. The file is written on the way.
@@ -96,6 +127,8 @@ fn plan(options: &Fit) -> Plan {
         rules: vec![RuleChoice::Rule(options.rule)],
         motions: vec![options.motion.unwrap_or(people.motion)],
         objects: options.objects.clone(),
+        priors: options.prior.clone(),
+        draws: options.draw.clone(),
         tasks: options.task.clone(),
         people: options.people.clone(),
         machine: options.machine,
@@ -134,14 +167,61 @@ fn report_of(
             fittable.join(", ")
         );
     }
-    let found = fit(objective, options.rule, options.folds, &told)?;
+    if options.served && options.folds < 2 {
+        bail!("--folds: found {}, expected at least 2 groups of people for --served", options.folds);
+    }
+    let start = match options.start {
+        StartFrom::Default => Start::Default,
+        StartFrom::Middle => Start::Middle,
+    };
+    let found = fit(objective, options.rule, options.folds, start, &told)?;
     bar.finish_and_clear();
     if let Some(out) = &options.out {
         let fitted = Some(fitted(&found, objective, recordings, files));
         let file = ParameterFile { rule: options.rule, parameters: found.parameters.clone(), fitted };
         std::fs::write(out, file.text()?).with_context(|| out.display().to_string())?;
     }
-    Ok(report(options.rule, objective, &found))
+    let mut text = report(options.rule, objective, &found);
+    if options.served {
+        text += &served(options, &found)?;
+    }
+    Ok(text)
+}
+
+/// Everybody replayed through the whole loop: with what was fitted without them, with the default, with what was fitted to all.
+fn served(options: &Fit, found: &Found) -> anyhow::Result<String> {
+    let subjects = Subjects::read(&options.paths)?;
+    let plan = plan(options);
+    let left_out = found.left_out_by_person();
+    if left_out.is_empty() {
+        bail!("--served: found one person, expected at least two, to be judged by what was fitted to others");
+    }
+    let bar = trials("trials");
+    let progress = |done: usize, count: usize| {
+        bar.set_length(count as u64);
+        bar.set_position(done as u64);
+    };
+    let timed = |plan: &Plan, own: &BTreeMap<String, IntentionParameters>| {
+        let started = Instant::now();
+        let mut evaluation = evaluate_by_person(&subjects, plan, own, &progress)?;
+        evaluation.wall_secs = started.elapsed().as_secs_f64();
+        Ok::<_, EvaluationProblem>(evaluation)
+    };
+    let judged = timed(&plan, &left_out)?;
+    let by_default = timed(&plan, &BTreeMap::new())?;
+    let fitted = Plan { intention: found.parameters.clone(), ..plan.clone() };
+    let to_everybody = timed(&fitted, &BTreeMap::new())?;
+    bar.finish_and_clear();
+    if let Some(file) = &options.json {
+        std::fs::write(file, json(&judged)?).with_context(|| file.display().to_string())?;
+    }
+    let mut text = String::new();
+    for (who, evaluation) in
+        [("people left out", &judged), ("by default", &by_default), ("fitted to everybody", &to_everybody)]
+    {
+        let _ = writeln!(text, "\nserved, {who}:\n{}", terminal(evaluation).trim_end());
+    }
+    Ok(text)
 }
 
 fn read(options: &Fit) -> anyhow::Result<(Vec<Recording>, Vec<FittedOn>)> {
@@ -272,7 +352,12 @@ mod tests {
             objects: vec![Objects::Count(2)],
             task: Vec::new(),
             people: Vec::new(),
+            prior: vec![Prior::None],
+            draw: vec![Draw::Hash],
+            start: StartFrom::Default,
             folds: 2,
+            served: false,
+            json: None,
             sweep: None,
             out: Some(folder.join("out.toml")),
             threads: 1,
@@ -311,6 +396,26 @@ mod tests {
         let sweep = Some((Parameter::named("paper.distance_share").unwrap(), 3));
         let swept = run(&Fit { sweep, out: None, ..options }).unwrap();
         assert_eq!(swept.lines().count(), 4, "{swept}");
+    }
+
+    #[test]
+    fn people_left_out_are_replayed_with_what_was_fitted_without_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let options = Fit {
+            served: true,
+            start: StartFrom::Middle,
+            json: Some(folder.path().join("left_out.json")),
+            ..options(folder.path(), RuleName::PaperBest)
+        };
+        let report = run(&options).unwrap();
+        for said in ["served, people left out:", "served, by default:", "served, fitted to everybody:"] {
+            assert!(report.contains(said), "{said:?} is not in {report}");
+        }
+        let written = std::fs::read_to_string(folder.path().join("left_out.json")).unwrap();
+        let table: serde_json::Value = serde_json::from_str(&written).unwrap();
+        assert_eq!(table["rows"][0]["trials"], 2, "{table}");
+        let nobody = run(&Fit { folds: 0, ..options }).unwrap_err().to_string();
+        assert!(nobody.contains("--folds: found 0"), "{nobody}");
     }
 
     #[test]

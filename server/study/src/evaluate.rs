@@ -29,6 +29,6 @@ pub use plan::{
 };
 pub use reliability::{Bin, calibration_error};
 pub use row::{Evaluation, LeftOut, Row, wilson};
-pub use run::{EvaluationProblem, Progress, evaluate, failures, sweep};
+pub use run::{EvaluationProblem, Progress, evaluate, evaluate_by_person, failures, sweep};
 pub use subjects::Subjects;
 pub use tables::{csv, goals, json, terminal};

@@ -13,6 +13,6 @@ mod success;
 
 pub use belief::BeliefLoss;
 pub use file::{FileProblem, Fitted, FittedOn, ParameterFile};
-pub use folds::{Fit, Fold, Loss, Objective, Tally, fit, sweep};
+pub use folds::{Fit, Fold, Loss, Objective, Start, Tally, fit, sweep};
 pub use parameters::{PARAMETERS, Parameter, Scale, of_rule};
 pub use success::FailureLoss;

@@ -75,8 +75,31 @@ pub fn sweep(
     intentions: &[IntentionParameters],
     progress: Progress<'_>,
 ) -> Result<Vec<Evaluation>, EvaluationProblem> {
+    by_person(subjects, plan, intentions.len(), &|_| intentions.iter().collect(), progress)
+}
+
+/// Replay the plan with each person under numbers of their own, those of the plan for who has none: so that everybody can be
+/// judged by what was fitted to others.
+pub fn evaluate_by_person(
+    subjects: &Subjects,
+    plan: &Plan,
+    intentions: &BTreeMap<String, IntentionParameters>,
+    progress: Progress<'_>,
+) -> Result<Evaluation, EvaluationProblem> {
+    let own = |person: &str| vec![intentions.get(person).unwrap_or(&plan.intention)];
+    let one = by_person(subjects, plan, 1, &own, progress)?;
+    one.into_iter().next().ok_or(EvaluationProblem::Nothing)
+}
+
+fn by_person(
+    subjects: &Subjects,
+    plan: &Plan,
+    count: usize,
+    intentions: Intentions<'_>,
+    progress: Progress<'_>,
+) -> Result<Vec<Evaluation>, EvaluationProblem> {
     let (cells, jobs) = (cells(plan), jobs(subjects, plan)?);
-    let of_each = cases(&jobs, plan, &cells, intentions, progress)?;
+    let of_each = cases(&jobs, plan, &cells, count, intentions, progress)?;
     let evaluation = |cases: Vec<Case<'_>>| Evaluation {
         schema: "covr.evaluation.v1",
         version: env!("CARGO_PKG_VERSION"),
@@ -99,7 +122,7 @@ pub fn failures(
     progress: Progress<'_>,
 ) -> Result<Vec<BTreeMap<String, [usize; 2]>>, EvaluationProblem> {
     let (cells, jobs) = (cells(plan), jobs(subjects, plan)?);
-    let of_each = cases(&jobs, plan, &cells, intentions, progress)?;
+    let of_each = cases(&jobs, plan, &cells, intentions.len(), &|_| intentions.iter().collect(), progress)?;
     let by_person = |cases: Vec<Case<'_>>| {
         let mut people: BTreeMap<String, [usize; 2]> = BTreeMap::new();
         for case in cases {
@@ -132,18 +155,19 @@ fn cases<'a>(
     jobs: &[Job<'a>],
     plan: &Plan,
     cells: &[Cell],
-    intentions: &[IntentionParameters],
+    count: usize,
+    intentions: Intentions<'_>,
     progress: Progress<'_>,
 ) -> Result<Vec<Vec<Case<'a>>>, EvaluationProblem> {
     let done = AtomicUsize::new(0);
-    let replays = cells.len() * intentions.len();
+    let replays = cells.len() * count;
     let outcomes = parallel::each(jobs.len(), plan.threads, |number| {
-        let outcomes = with_each(plan, intentions, cells, &jobs[number]);
+        let outcomes = with_each(plan, &intentions(jobs[number].person()), cells, &jobs[number]);
         progress(done.fetch_add(replays, Ordering::Relaxed) + replays, replays * jobs.len());
         outcomes
     });
     let outcomes = outcomes.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let mut of_each: Vec<Vec<Case<'_>>> = intentions.iter().map(|_| Vec::new()).collect();
+    let mut of_each: Vec<Vec<Case<'_>>> = (0..count).map(|_| Vec::new()).collect();
     for (job, outcomes) in jobs.iter().zip(outcomes) {
         let (file, recording) = match job {
             Job::Reach(reach) => (&reach.file, &reach.recording),
@@ -157,11 +181,23 @@ fn cases<'a>(
     Ok(of_each)
 }
 
+/// The numbers of the rules that a person is replayed with, as many for everybody.
+type Intentions<'a> = &'a (dyn Fn(&str) -> Vec<&'a IntentionParameters> + Sync);
+
 /// What a thread takes at once.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Job<'a> {
     Reach(&'a Reach),
     Session(&'a Session),
+}
+
+impl Job<'_> {
+    fn person(&self) -> &str {
+        match self {
+            Self::Reach(reach) => &reach.recording.user,
+            Self::Session(session) => &session.recording.user,
+        }
+    }
 }
 
 /// One reach, of a trial or in a session, and what became of it in each cell.
@@ -210,7 +246,7 @@ pub(super) fn cells(plan: &Plan) -> Vec<Cell> {
 /// once.
 fn with_each(
     plan: &Plan,
-    intentions: &[IntentionParameters],
+    intentions: &[&IntentionParameters],
     cells: &[Cell],
     job: &Job<'_>,
 ) -> Result<Vec<Vec<Vec<Option<Judged>>>>, EvaluationProblem> {

@@ -170,7 +170,7 @@ const LEAST_PROBABILITY: f64 = 1e-3;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::fit;
+    use crate::fit::{Start, fit};
     use crate::trace::Recordings;
     use std::io::Cursor;
     use std::path::Path;
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn where_distance_tells_more_distance_is_given_its_weight() {
         let loss = BeliefLoss::new(&recordings(), RuleName::Paper, &[Objects::Count(2)], 1).unwrap();
-        let fitted = fit(&loss, RuleName::Paper, 3, &|| ()).unwrap();
+        let fitted = fit(&loss, RuleName::Paper, 3, Start::Default, &|| ()).unwrap();
         assert!(fitted.parameters.paper.distance_share > 0.9, "{fitted:?}");
         assert!(fitted.in_sample < fitted.before);
         // Three people who are alike: what was left out is as good.

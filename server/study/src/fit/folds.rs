@@ -60,21 +60,36 @@ pub struct Fit {
     pub folds: Vec<Fold>,
 }
 
+/// Where a search begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Start {
+    /// At the parameters by default. Those that ship may have been found on the same people.
+    Default,
+    /// In the middle of every range, which nobody found on anybody.
+    Middle,
+}
+
 /// Fit a rule's parameters; `folds` groups of people are left out in turn, 0 for none. `told` hears of every
 /// evaluation.
 pub fn fit(
     objective: &dyn Objective,
     rule: RuleName,
     folds: usize,
+    start: Start,
     told: &dyn Fn(),
 ) -> Result<Fit, EvaluationProblem> {
     let parameters: Vec<&Parameter> = of_rule(rule).collect();
     let mut known = Known { objective, parameters: &parameters, known: Vec::new(), told };
-    let start: Vec<f64> = parameters.iter().map(|p| p.share_of(p.default())).collect();
-    let people: Vec<String> = known.at(&start)?.keys().cloned().collect();
+    let default: Vec<f64> = parameters.iter().map(|p| p.share_of(p.default())).collect();
+    let people: Vec<String> = known.at(&default)?.keys().cloned().collect();
+    let before = mean(known.at(&default)?, &|_| true);
+    let start = match start {
+        Start::Default => default,
+        Start::Middle => vec![0.5; parameters.len()],
+    };
     let everybody = known.fitted(&start, &|_| true)?;
-    let before = mean(known.at(&start)?, &|_| true);
-    let groups = if folds < 2 { 0 } else { folds.min(people.len()) };
+    // Whoever is alone cannot be judged by what was fitted to others.
+    let groups = Some(folds.min(people.len())).filter(|groups| *groups >= 2).unwrap_or(0);
     let mut parts = Vec::new();
     let mut outside = Tally::default();
     for group in 0..groups {
@@ -94,6 +109,17 @@ pub fn fit(
         left_out: (!parts.is_empty()).then(|| outside.mean()),
         folds: parts,
     })
+}
+
+impl Fit {
+    /// Each person with the parameters of the fold that left them out; nobody without folds.
+    pub fn left_out_by_person(&self) -> BTreeMap<String, IntentionParameters> {
+        let of_fold = |fold: &Fold| {
+            let parameters = fold.parameters.clone();
+            fold.left_out.clone().into_iter().map(move |person| (person, parameters.clone()))
+        };
+        self.folds.iter().flat_map(of_fold).collect()
+    }
 }
 
 /// Mean loss at evenly spaced values of one parameter, the others as they are.
@@ -153,8 +179,19 @@ impl Known<'_> {
         parameters
     }
 
+    /// The least loss of these people. What none of their cases depends on keeps its default: nobody found another number.
     fn fitted(&mut self, start: &[f64], among: &dyn Fn(&str) -> bool) -> Result<Vec<f64>, EvaluationProblem> {
-        least(start, |shares| Ok(mean(self.at(shares)?, among))).map(|found| found.shares)
+        let mut found = least(start, |shares| Ok(mean(self.at(shares)?, among)))?;
+        for (place, parameter) in self.parameters.iter().enumerate() {
+            let share = parameter.share_of(parameter.default());
+            if found.shares[place] != share {
+                let searched = std::mem::replace(&mut found.shares[place], share);
+                if mean(self.at(&found.shares)?, among) != found.loss {
+                    found.shares[place] = searched;
+                }
+            }
+        }
+        Ok(found.shares)
     }
 }
 
@@ -202,7 +239,7 @@ mod tests {
 
     #[test]
     fn people_left_out_are_judged_by_what_the_others_wished() {
-        let fit = fit(&FOUR, RuleName::Paper, 4, &|| ()).unwrap();
+        let fit = fit(&FOUR, RuleName::Paper, 4, Start::Default, &|| ()).unwrap();
         assert!((fit.parameters.paper.distance_share - 0.5).abs() < 0.02, "{fit:?}");
         assert!(fit.in_sample < fit.before && fit.left_out.unwrap() > fit.in_sample);
         let of_d = fit.folds.iter().find(|fold| fold.left_out == ["d"]).unwrap();
@@ -215,9 +252,31 @@ mod tests {
     }
 
     #[test]
+    fn everybody_left_out_has_the_parameters_of_the_fold_without_them() {
+        let fit = fit(&FOUR, RuleName::Paper, 2, Start::Default, &|| ()).unwrap();
+        let by_person = fit.left_out_by_person();
+        assert_eq!(by_person.keys().collect::<Vec<_>>(), ["a", "b", "c", "d"]);
+        for fold in &fit.folds {
+            assert!(fold.left_out.iter().all(|person| by_person[person] == fold.parameters));
+        }
+        // Without a and c (0.2 and 0.6) it is 0.6, the mean of the others.
+        assert!((by_person["a"].paper.distance_share - 0.6).abs() < 0.02, "{by_person:?}");
+    }
+
+    #[test]
+    fn a_search_from_the_middle_finds_the_same_and_is_held_against_the_default() {
+        let from = |start| fit(&FOUR, RuleName::Paper, 0, start, &|| ()).unwrap();
+        let (middle, default) = (from(Start::Middle), from(Start::Default));
+        assert!((middle.parameters.paper.distance_share - 0.5).abs() < 0.02);
+        assert_eq!(middle.before, default.before);
+        // What does not matter is not left in the middle.
+        assert_eq!(middle.parameters.paper.threshold, IntentionParameters::default().paper.threshold);
+    }
+
+    #[test]
     fn nothing_is_evaluated_twice_and_parameters_that_do_not_matter_stay() {
         let count = Cell::new(0);
-        let fit = fit(&FOUR, RuleName::Paper, 0, &|| count.set(count.get() + 1)).unwrap();
+        let fit = fit(&FOUR, RuleName::Paper, 0, Start::Default, &|| count.set(count.get() + 1)).unwrap();
         assert!(count.get() < 60, "{}", count.get());
         assert_eq!((fit.left_out, fit.folds.len()), (None, 0));
         assert_eq!(fit.parameters.paper.threshold, IntentionParameters::default().paper.threshold);

@@ -255,3 +255,22 @@ fn a_sweep_is_what_one_value_after_the_other_would_give() {
     );
     assert!(terminal(&one).contains("paper* 0.500") || terminal(&one).contains("paper 0.500"));
 }
+
+#[test]
+fn a_person_may_have_numbers_of_their_own_and_others_have_the_plans() {
+    let subjects = Subjects::synthetic(20);
+    let mut far = IntentionParameters::default();
+    far.paper.distance_share = 1.0;
+    let plan =
+        Plan { objects: vec![Objects::Count(4)], rules: vec![RuleChoice::Rule(RuleName::Paper)], ..plan(0) };
+    let own = [("synthetic 2".to_owned(), far.clone())].into();
+    let mixed = evaluate_by_person(&subjects, &plan, &own, &|_, _| ()).unwrap();
+    let of = |person: &str, intention: &IntentionParameters| {
+        let plan = Plan { people: vec![person.into()], intention: intention.clone(), ..plan.clone() };
+        evaluate(&subjects, &plan, &|_, _| ()).unwrap().rows.iter().map(|row| row.successes).sum::<usize>()
+    };
+    let (default, both) =
+        (IntentionParameters::default(), mixed.rows.iter().map(|row| row.successes).sum::<usize>());
+    assert_eq!(both, of("synthetic 1", &default) + of("synthetic 2", &far));
+    assert_ne!(of("synthetic 2", &default), of("synthetic 2", &far), "else the test shows nothing");
+}
