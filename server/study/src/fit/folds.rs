@@ -181,7 +181,7 @@ impl Known<'_> {
 
     /// The least loss of these people. What none of their cases depends on keeps its default: nobody found another number.
     fn fitted(&mut self, start: &[f64], among: &dyn Fn(&str) -> bool) -> Result<Vec<f64>, EvaluationProblem> {
-        let mut found = least(start, |shares| Ok(mean(self.at(shares)?, among)))?;
+        let mut found = least(start, |shares| Ok::<_, EvaluationProblem>(mean(self.at(shares)?, among)))?;
         for (place, parameter) in self.parameters.iter().enumerate() {
             let share = parameter.share_of(parameter.default());
             if found.shares[place] != share {
