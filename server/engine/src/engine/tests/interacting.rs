@@ -189,7 +189,7 @@ fn every_end_of_a_contact_stops_the_column_and_nothing_begins_by_itself() {
             },
             Reason::ContactTakenBack,
         ),
-        (|room| drop(room.led(4.0, |_| true)), Reason::ContactTimeOver),
+        (|room| _ = room.led(4.0, |_| true), Reason::ContactTimeOver),
         (
             |room| {
                 room.ask(RequestKind::Stop);
