@@ -7,8 +7,9 @@ use std::time::Instant;
 use covr_engine::frames::Floor;
 use covr_engine::machine::Travel;
 use covr_engine::time::Time;
-use covr_gantry::roboclaw::RoboClaw;
-use covr_gantry::roboclaw::settings::HomeBy;
+use covr_gantry::homing::HomeBy;
+use covr_gantry::linked::machine::Linked;
+use covr_gantry::roboclaw;
 use covr_server::config::Config;
 use tempfile::TempDir;
 
@@ -18,7 +19,7 @@ use crate::process::program;
 pub struct Boards {
     // Before the emulator: its last word still goes out.
     /// The driver.
-    pub machine: RoboClaw,
+    pub machine: Linked,
     emulator: Child,
     orders: ChildStdin,
     began: Instant,
@@ -54,7 +55,7 @@ impl Boards {
         boards.homing.switch_outside_m = 0.03;
         let settings = config.machine.roboclaw.settings(&config);
         let began = Instant::now();
-        let machine = RoboClaw::start(settings, move || since(began), || ()).unwrap();
+        let machine = roboclaw::start(settings, move || since(began), || ()).unwrap();
         Self { machine, emulator, orders, began, _dir: dir }
     }
 

@@ -1,12 +1,15 @@
-//! `covr emulate roboclaw`: boards that are not there, on a pseudo-terminal.
+//! `covr emulate`: motor controllers that are not there, on a pseudo-terminal.
 //!
-//! The boards are [`covr_gantry::roboclaw::emulator`]; here is their clock, their port and the orders on standard input.
+//! They are [`covr_gantry::roboclaw::emulator`]; here is their clock, their port and the orders on standard input.
 
 mod options;
 mod port;
 mod session;
 
 use clap::{Args, Subcommand};
+use covr_gantry::roboclaw;
+
+use session::Start;
 
 pub use options::Roboclaw;
 
@@ -28,6 +31,11 @@ pub enum Emulated {
 /// Until it is told to end by a signal.
 pub fn run(command: &EmulateCommand) -> anyhow::Result<()> {
     match &command.what {
-        Emulated::Roboclaw(options) => session::run(options),
+        Emulated::Roboclaw(options) => session::run(Start {
+            name: "roboclaw",
+            emulator: roboclaw::emulator::Emulator::new(options.setup())?,
+            orders: options.orders().collect(),
+            link: options.link.as_deref(),
+        }),
     }
 }

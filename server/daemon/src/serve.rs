@@ -12,7 +12,7 @@ use covr_engine::safety::separation::KeptFrom;
 use covr_engine::time::Span;
 use covr_engine::{Engine, EngineConfig, Request};
 use covr_gantry::contract::Gantry;
-use covr_gantry::roboclaw::RoboClaw;
+use covr_gantry::roboclaw;
 use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::MachineParameters;
 use covr_wire::dashboard::MachineShape;
@@ -337,7 +337,7 @@ fn machine(config: &Config, clock: Clock) -> anyhow::Result<Box<dyn Gantry>> {
                 let came_of_it = real_time::ask(priority);
                 tracing::debug!(?came_of_it, "the link thread's scheduling");
             };
-            let machine = RoboClaw::start(settings, move || clock.now(), on_thread);
+            let machine = roboclaw::start(settings, move || clock.now(), on_thread);
             Ok(Box::new(machine.context("the RoboClaw machine")?))
         }
     }

@@ -58,6 +58,15 @@ pub struct HomingParameters {
     pub rest_inside_m: f64,
 }
 
+/// What homing looks for at the low end of each rail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HomeBy {
+    /// Switches.
+    Switches,
+    /// The hard stops.
+    Stops,
+}
+
 /// What the axis says of itself at one step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seen {

@@ -15,20 +15,40 @@
 //! - [`settings`]: what a machine is made of.
 
 mod board;
-mod contact;
 mod driver;
 pub mod emulator;
 mod exchange;
-mod figures;
 mod firmware;
-mod follow;
-mod link;
-mod machine;
 mod packet;
-mod port;
 mod session;
 pub mod settings;
 #[cfg(test)]
 mod tests;
 
-pub use machine::RoboClaw;
+use covr_engine::time::Time;
+
+use crate::linked::link::NotBegun;
+use crate::linked::machine::{Linked, Machine};
+use crate::linked::port::Serial;
+use session::Session;
+use settings::Settings;
+
+/// Start a machine of one or two boards (see [`Linked::start`]).
+pub fn start(
+    settings: Settings,
+    clock: impl Fn() -> Time + Send + 'static,
+    on_thread: impl FnOnce() + Send + 'static,
+) -> std::io::Result<Linked> {
+    let machine = Machine {
+        name: "RoboClaw",
+        limits: settings.limits,
+        travel: settings.travel,
+        parked: settings.parked,
+        period: settings.period,
+    };
+    let open = move |stood_at| {
+        let port = Serial::open(&settings.port, settings.baud).map_err(NotBegun::NoPort)?;
+        Session::open(port, &settings, stood_at).map_err(NotBegun::Refused)
+    };
+    Linked::start(machine, open, clock, on_thread)
+}

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use covr_engine::frames::Floor;
 use covr_engine::time::Span;
-use covr_gantry::homing::HomingParameters;
-use covr_gantry::roboclaw::settings::{AxisSettings, Boards, HomeBy, Settings, VelocityPid};
+use covr_gantry::homing::{HomeBy, HomingParameters};
+use covr_gantry::roboclaw::settings::{AxisSettings, Boards, Settings, VelocityPid};
 
 use super::Config;
 

@@ -14,7 +14,7 @@ use covr_gantry::sim::parameters::MachineParameters;
 
 /// RoboClaw boards on a pseudo-terminal, in front of the simulated motors.
 #[derive(Debug, Clone, Args)]
-#[command(after_help = orders_help())]
+#[command(after_help = orders_help(ORDERS))]
 pub struct Roboclaw {
     /// Boards on the line: one with x on M1 and y on M2, or two with x on M1 of the first and y on M1 of the second.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
@@ -108,14 +108,14 @@ impl Roboclaw {
     }
 }
 
-fn orders_help() -> String {
+pub fn orders_help(orders: &str) -> String {
     format!(
         "Orders, as --order \"ORDER\" or a line each on standard input while it runs (answered by `done: ORDER`):\n\n{}\
          \nOn standard input also:\n\n\
          unplug               the cable is out: the pseudo-terminal and its link are gone\n\
          plug                 it is in again, with a new pseudo-terminal; its path is printed\n\
-         show                 one line of JSON: what is true of each axis, the e-stop, and what went over the line\n",
-        ORDERS
+         show                 one line of JSON: what is true of each axis, what the controller does, and what went over the line\n",
+        orders
     )
 }
 
@@ -127,7 +127,7 @@ fn address(text: &str) -> Result<u8, String> {
     number.map_err(|_| "expected 0x80 to 0x87".into())
 }
 
-fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+pub fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let found: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
     let found = found.ok().and_then(|found| <[f64; N]>::try_from(found).ok());
     found.ok_or_else(|| format!("expected {N} numbers with commas between them"))

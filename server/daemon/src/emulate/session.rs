@@ -2,26 +2,37 @@
 
 use std::io::{Read, Write};
 use std::os::fd::AsFd;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use covr_engine::time::{Span, Time};
-use covr_gantry::roboclaw::emulator::Emulator;
-use covr_gantry::roboclaw::emulator::orders::{Axis, Order};
+use covr_gantry::emulation::{Axis, Emulated};
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, ppoll};
 use nix::sys::prctl::set_timerslack;
 use nix::sys::signal::{SigSet, Signal};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
 use nix::sys::time::TimeSpec;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::control::real_time;
 
-use super::options::Roboclaw;
 use super::port::Port;
 
+/// What is emulated, and where.
+pub struct Start<'a, E: Emulated> {
+    /// What it is called where its path is said.
+    pub name: &'static str,
+    /// The controller.
+    pub emulator: E,
+    /// What goes wrong from the beginning.
+    pub orders: Vec<E::Order>,
+    /// A symbolic link to the pseudo-terminal, for as long as it runs.
+    pub link: Option<&'a Path>,
+}
+
 /// Until SIGINT or SIGTERM.
-pub fn run(options: &Roboclaw) -> anyhow::Result<()> {
+pub fn run<E: Emulated>(start: Start<'_, E>) -> anyhow::Result<()> {
     let mut ends = SigSet::empty();
     ends.add(Signal::SIGINT);
     ends.add(Signal::SIGTERM);
@@ -29,7 +40,7 @@ pub fn run(options: &Roboclaw) -> anyhow::Result<()> {
     let signals = SignalFd::with_flags(&ends, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)?;
     // The kernel's usual 50 microseconds would be half a byte at 115200 baud.
     set_timerslack(TIMER_SLACK_NANOS)?;
-    let mut session = Session::new(options)?;
+    let mut session = Session::new(start)?;
     // A board has a processor of its own.
     let came_of_it = real_time::ask(Some(PRIORITY));
     tracing::debug!(?came_of_it, "the boards' scheduling");
@@ -40,9 +51,10 @@ pub fn run(options: &Roboclaw) -> anyhow::Result<()> {
     Ok(())
 }
 
-struct Session<'a> {
-    options: &'a Roboclaw,
-    emulator: Emulator,
+struct Session<'a, E> {
+    name: &'static str,
+    link: Option<&'a Path>,
+    emulator: E,
     /// None while the cable is out.
     port: Option<Port>,
     began: Instant,
@@ -51,12 +63,12 @@ struct Session<'a> {
     woke_at: Time,
 }
 
-impl<'a> Session<'a> {
-    fn new(options: &'a Roboclaw) -> anyhow::Result<Self> {
-        let emulator = Emulator::new(options.setup())?;
+impl<'a, E: Emulated> Session<'a, E> {
+    fn new(start: Start<'a, E>) -> anyhow::Result<Self> {
+        let Start { name, emulator, orders, link } = start;
         let (began, line) = (Instant::now(), Some(Vec::new()));
-        let mut session = Self { options, emulator, port: None, began, line, woke_at: Time::ZERO };
-        for order in options.orders() {
+        let mut session = Self { name, link, emulator, port: None, began, line, woke_at: Time::ZERO };
+        for order in orders {
             session.emulator.give(session.now(), order);
         }
         session.plug()?;
@@ -143,7 +155,7 @@ impl<'a> Session<'a> {
             "plug" if self.port.is_none() => self.plug()?,
             "plug" => {}
             "show" => return say(&self.shown(now)),
-            line => match line.parse::<Order>() {
+            line => match line.parse::<E::Order>() {
                 Ok(order) => self.emulator.give(now, order),
                 Err(refused) => {
                     // With standard error closed there is nobody to tell.
@@ -156,8 +168,8 @@ impl<'a> Session<'a> {
     }
 
     fn plug(&mut self) -> anyhow::Result<()> {
-        let port = Port::new(self.options.link.as_deref())?;
-        say(&format!("roboclaw emulator on {}", port.path().display()))?;
+        let port = Port::new(self.link)?;
+        say(&format!("{} emulator on {}", self.name, port.path().display()))?;
         self.port = Some(port);
         Ok(())
     }
@@ -180,17 +192,19 @@ impl<'a> Session<'a> {
             })
         };
         let traffic = self.emulator.traffic();
-        json!({
+        let mut shown = json!({
             "x": axis(Axis::X),
             "y": axis(Axis::Y),
-            "is_e_stopped": self.emulator.is_e_stopped(),
             "bytes_in": traffic.bytes_in,
             "bytes_out": traffic.bytes_out,
             "packets": traffic.packets,
             "starts": traffic.starts,
             "seconds": now.secs(),
-        })
-        .to_string()
+        });
+        for (name, is_so) in self.emulator.flags() {
+            shown[name] = Value::Bool(is_so);
+        }
+        shown.to_string()
     }
 
     fn now(&self) -> Time {

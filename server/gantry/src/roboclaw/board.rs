@@ -2,11 +2,16 @@
 //!
 //! Only a configured board has a verb that moves. What was set is read back, and a board that keeps another value is refused.
 
-use super::exchange::{Line, Lost, Tally};
+use covr_engine::machine::Trouble;
+
+use super::exchange::{Line, Lost};
 use super::firmware::{Firmware, Status};
 use super::packet::{Command, Packet, Reply};
-use super::port::Port;
-use super::settings::{AxisSettings, Boards, HomeBy, Settings, VelocityPid};
+use super::settings::{AxisSettings, Boards, Settings, VelocityPid};
+use crate::homing::HomeBy;
+use crate::linked::figures::Tally;
+use crate::linked::link::{Loss, Refusal};
+use crate::linked::port::Port;
 
 /// Why a board is not driven.
 #[derive(Debug, thiserror::Error)]
@@ -28,6 +33,25 @@ pub enum Refused {
     /// It does not keep what it was told.
     #[error("the board at address {address:#04x} does not keep its {what}: told {told}, it says {says}")]
     NotKept { address: u8, what: &'static str, told: String, says: String },
+}
+
+impl Refusal for Refused {
+    fn trouble(&self) -> Trouble {
+        match self {
+            Self::Lost(_) => Trouble::NoAnswer,
+            Self::UnknownFirmware { .. } | Self::DifferentFirmwares(..) => Trouble::UnknownFirmware,
+            Self::NotKept { .. } => Trouble::NotConfigured,
+            Self::SwitchOffAndOn { .. } => Trouble::SwitchOffAndOn,
+        }
+    }
+
+    fn loss(&self) -> Option<Loss> {
+        match self {
+            Self::Lost(Lost::Port(_)) => Some(Loss::Port),
+            Self::Lost(_) => Some(Loss::Answer),
+            _ => None,
+        }
+    }
 }
 
 /// Something answers, perhaps.
@@ -302,7 +326,8 @@ impl<P: Port> Configured<P> {
     /// Whether every board still has the serial timeout that it was given: one that restarted has not.
     pub fn keeps_its_timeout(&mut self) -> Result<bool, Lost> {
         for address in self.boards.addresses() {
-            let says = self.line.ask::<1>(Packet::to(address, Command::ReadSerialTimeout).question())?;
+            let question = Packet::to(address, Command::ReadSerialTimeout).question();
+            let says = self.line.ask_if_well::<1>(question)?;
             if says != [self.serial_timeout_tenths] {
                 return Ok(false);
             }
@@ -312,7 +337,7 @@ impl<P: Port> Configured<P> {
 
     fn ask_first(&mut self, command: Command) -> Result<u16, Lost> {
         let (Boards::One(address) | Boards::Two([address, _])) = self.boards;
-        let answer = self.line.ask::<2>(Packet::to(address, command).question())?;
+        let answer = self.line.ask_if_well::<2>(Packet::to(address, command).question())?;
         Ok(Reply(&answer).word(0))
     }
 

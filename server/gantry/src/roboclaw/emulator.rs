@@ -28,10 +28,7 @@ mod crc;
 mod encoder;
 pub mod firmware;
 mod framing;
-mod line;
 pub mod orders;
-mod random;
-mod rig;
 pub mod settings;
 pub mod setup;
 mod speed_loop;
@@ -44,11 +41,13 @@ use board::{Answer, Board, Identity, Senses};
 use commands::shape;
 use crc::check_word;
 use framing::{Framer, Packet};
-use line::{Line, Moment, Reply};
 use orders::{Axis, Order};
-use random::Random;
-use rig::{Rig, TICK_MICROS};
 use setup::{Setup, SetupProblem, Wiring};
+
+use crate::emulation::line::{Line, Moment, Reply};
+use crate::emulation::random::Random;
+use crate::emulation::rig::{Rig, TICK_MICROS};
+pub use crate::emulation::{AxisTruth, Emulated, Traffic};
 
 /// Boards, their line, and what they drive.
 #[derive(Debug, Clone)]
@@ -82,34 +81,6 @@ struct Switches {
     dark_until: Option<Time>,
 }
 
-/// What is true of an axis, whatever the boards believe.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AxisTruth {
-    /// Where the column is along it, room frame, m.
-    pub position_m: f64,
-    /// m/s.
-    pub speed_mps: f64,
-    /// In the winding, signed, A.
-    pub amps: f64,
-    /// What the encoder has counted since the emulator began.
-    pub counts: i64,
-    /// Its end switch is active.
-    pub is_switch_active: bool,
-}
-
-/// What went over the line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Traffic {
-    /// Bytes that reached the boards.
-    pub bytes_in: u64,
-    /// Bytes that the boards sent.
-    pub bytes_out: u64,
-    /// Packets for a board that were whole and right.
-    pub packets: u64,
-    /// Times that the boards started.
-    pub starts: u64,
-}
-
 impl Emulator {
     /// Boards whose power comes on with the first call.
     pub fn new(setup: Setup) -> Result<Self, SetupProblem> {
@@ -128,62 +99,9 @@ impl Emulator {
         })
     }
 
-    /// Bytes that the host begins to send at `now`.
-    pub fn receive(&mut self, now: Time, bytes: &[u8]) {
-        self.advance(now);
-        for byte in bytes {
-            let arriving = noise(&mut self.random, &self.switches, *byte);
-            self.line.send_to_board(now, arriving);
-        }
-    }
-
-    /// Bytes that have reached the host by `now`.
-    pub fn poll(&mut self, now: Time) -> Vec<u8> {
-        self.advance(now);
-        self.line.at_host(now)
-    }
-
-    /// When there is something to do next, if anything: a byte arrives, either way.
-    pub fn next_due(&self) -> Option<Time> {
-        self.line.next_due()
-    }
-
-    /// Bytes that the host has sent and that no board has yet. A host that overfills its line waits.
-    pub fn backlog(&self) -> usize {
-        self.line.backlog()
-    }
-
-    /// From now on, or once.
-    pub fn give(&mut self, now: Time, order: Order) {
-        self.advance(now);
-        self.obey(now, order);
-    }
-
-    /// The cable is out: what is on the line is lost.
-    pub fn unplug(&mut self, now: Time) {
-        self.advance(now);
-        self.line.cut();
-    }
-
-    /// What is true of an axis now.
-    pub fn truth(&self, axis: Axis) -> AxisTruth {
-        AxisTruth {
-            position_m: self.rig.position_m(axis),
-            speed_mps: self.rig.speed_mps(axis),
-            amps: self.rig.amps(axis),
-            counts: self.rig.counts(axis),
-            is_switch_active: self.rig.is_switch_active(axis),
-        }
-    }
-
     /// A board keeps its motors off because of its e-stop pin.
     pub fn is_e_stopped(&self) -> bool {
         self.boards.iter().any(Board::is_e_stopped)
-    }
-
-    /// What went over the line until now.
-    pub const fn traffic(&self) -> Traffic {
-        self.traffic
     }
 
     fn advance(&mut self, now: Time) {
@@ -345,6 +263,53 @@ impl Emulator {
         });
         self.boards = boards.collect();
         self.traffic.starts = 1;
+    }
+}
+
+impl Emulated for Emulator {
+    type Order = Order;
+
+    fn receive(&mut self, now: Time, bytes: &[u8]) {
+        self.advance(now);
+        for byte in bytes {
+            let arriving = noise(&mut self.random, &self.switches, *byte);
+            self.line.send_to_board(now, arriving);
+        }
+    }
+
+    fn poll(&mut self, now: Time) -> Vec<u8> {
+        self.advance(now);
+        self.line.at_host(now)
+    }
+
+    fn next_due(&self) -> Option<Time> {
+        self.line.next_due()
+    }
+
+    fn backlog(&self) -> usize {
+        self.line.backlog()
+    }
+
+    fn give(&mut self, now: Time, order: Order) {
+        self.advance(now);
+        self.obey(now, order);
+    }
+
+    fn unplug(&mut self, now: Time) {
+        self.advance(now);
+        self.line.cut();
+    }
+
+    fn truth(&self, axis: Axis) -> AxisTruth {
+        self.rig.truth(axis)
+    }
+
+    fn traffic(&self) -> Traffic {
+        self.traffic
+    }
+
+    fn flags(&self) -> Vec<(&'static str, bool)> {
+        vec![("is_e_stopped", self.is_e_stopped())]
     }
 }
 

@@ -9,7 +9,8 @@ use std::io;
 use std::time::{Duration, Instant};
 
 use super::packet::{crc16, crc16_on};
-use super::port::Port;
+use crate::linked::figures::Tally;
+use crate::linked::port::Port;
 
 /// Why an exchange failed.
 #[derive(Debug, thiserror::Error)]
@@ -23,19 +24,6 @@ pub enum Lost {
     /// The port is gone.
     #[error("the port: {0}")]
     Port(#[from] io::Error),
-}
-
-/// What the line has been like since it was opened.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Tally {
-    /// Exchanges that were answered.
-    pub answered: u64,
-    /// Exchanges that were not answered, or not well.
-    pub lost: u64,
-    /// Of these, sent again.
-    pub repeated: u64,
-    /// Bytes, either way.
-    pub bytes: u64,
 }
 
 /// The line and what is known of it.
@@ -68,6 +56,11 @@ impl<P: Port> Line<P> {
     /// Ask; the answer is `N` bytes and their CRC. Repeated when it is lost: asking changes nothing.
     pub fn ask<const N: usize>(&mut self, question: [u8; 2]) -> Result<[u8; N], Lost> {
         self.again(|line| line.ask_once(question))
+    }
+
+    /// Ask once: for what can wait for its next turn, and must not keep a command waiting meanwhile.
+    pub fn ask_if_well<const N: usize>(&mut self, question: [u8; 2]) -> Result<[u8; N], Lost> {
+        self.ask_once(question)
     }
 
     /// Ask for a text that ends in a zero byte.

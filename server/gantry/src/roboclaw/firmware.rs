@@ -5,6 +5,8 @@
 //! latch. The status grew in 4.1.29 (maker's support); that the pin modes changed with it is an inference. A board of any other
 //! firmware is not driven.
 
+pub use crate::linked::axes::Status;
+
 /// A firmware whose tables are known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Firmware {
@@ -12,23 +14,6 @@ pub enum Firmware {
     Older,
     /// 4.1.29 and later, 4.2, 4.3: status of 32 bits.
     Newer,
-}
-
-/// What a status says, whatever the bits are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Status {
-    /// The emergency stop's pin is active, or latched.
-    pub emergency_stop: bool,
-    /// A bridge is broken.
-    pub driver_fault: bool,
-    /// The board is too hot and has switched off.
-    pub too_hot: bool,
-    /// A supply is outside what the board stands, and it has switched off.
-    pub bad_supply: bool,
-    /// The board limits a motor's current now.
-    pub current_limited: [bool; 2],
-    /// The home switches of M1 and M2.
-    pub at_switch: [bool; 2],
 }
 
 impl Firmware {
@@ -80,6 +65,7 @@ impl Firmware {
                 bad_supply: bits & 0x00E0 != 0,
                 current_limited: [bits & 0x0001 != 0, bits & 0x0002 != 0],
                 at_switch: [bits & 0x4000 != 0, bits & 0x8000 != 0],
+                restarted: false,
             },
             Self::Newer => Status {
                 emergency_stop: bits & 0x0000_0001 != 0,
@@ -88,6 +74,7 @@ impl Firmware {
                 bad_supply: bits & 0x0000_0038 != 0,
                 current_limited: [bits & 0x0001_0000 != 0, bits & 0x0002_0000 != 0],
                 at_switch: [bits & 0x0040_0000 != 0, bits & 0x0080_0000 != 0],
+                restarted: false,
             },
         }
     }

@@ -6,10 +6,11 @@ use covr_engine::time::{Span, Time};
 
 use super::board::{Configured, Connected, Refused};
 use super::driver::{Driver, Order, Tell};
-use super::exchange::{Lost, Tally};
-use super::firmware::Firmware;
-use super::port::Port;
+use super::exchange::Lost;
 use super::settings::Settings;
+use crate::linked::figures::{Figures, Tally};
+use crate::linked::link;
+use crate::linked::port::Port;
 
 /// Boards that can be driven, and what is known of them.
 pub struct Session<P> {
@@ -33,8 +34,20 @@ impl<P: Port> Session<P> {
         })
     }
 
-    /// Tell the boards what the order means, then look. Whether they acknowledged it.
-    pub fn cycle(&mut self, order: &Order, clock: &impl Fn() -> Time) -> Result<bool, Refused> {
+    fn limit_current(&mut self, gently: bool) -> Result<(), Refused> {
+        if gently != self.pushes_gently {
+            let [homing, usual] = self.limits_amps;
+            self.board.limit_current(if gently { homing } else { usual })?;
+            self.pushes_gently = gently;
+        }
+        Ok(())
+    }
+}
+
+impl<P: Port> link::Session for Session<P> {
+    type Refused = Refused;
+
+    fn cycle(&mut self, order: &Order, clock: &dyn Fn() -> Time) -> Result<bool, Refused> {
         let mut is_acknowledged = false;
         // Nothing is told to boards that were never looked at.
         if self.driver.report().answered_at != Time::ZERO {
@@ -64,33 +77,30 @@ impl<P: Port> Session<P> {
         Ok(is_acknowledged)
     }
 
-    pub fn report(&self) -> MachineReport {
+    fn slow_look(&mut self, turn: u64, figures: &mut Figures) -> bool {
+        match turn % 3 {
+            0 => figures.volts(self.board.main_volts().ok()),
+            1 => figures.temperature(self.board.temperature_c().ok()),
+            // A lost answer is nothing to act on: the fast looks watch the link.
+            _ => return !matches!(self.board.keeps_its_timeout(), Ok(false)),
+        }
+        true
+    }
+
+    fn report(&self) -> MachineReport {
         self.driver.report()
     }
 
-    pub fn board(&mut self) -> &mut Configured<P> {
-        &mut self.board
-    }
-
-    pub fn firmware(&self) -> (&str, Firmware) {
-        self.board.firmware()
-    }
-
-    pub fn tally(&self) -> Tally {
-        self.board.tally()
-    }
-
-    /// Its place is lost and it is let go: it is to be found and configured anew.
-    pub fn is_over(&self) -> bool {
+    fn is_over(&self) -> bool {
         self.driver.is_over()
     }
 
-    fn limit_current(&mut self, gently: bool) -> Result<(), Refused> {
-        if gently != self.pushes_gently {
-            let [homing, usual] = self.limits_amps;
-            self.board.limit_current(if gently { homing } else { usual })?;
-            self.pushes_gently = gently;
-        }
-        Ok(())
+    fn firmware(&self) -> (&str, &str) {
+        let (text, firmware) = self.board.firmware();
+        (text, firmware.name())
+    }
+
+    fn tally(&self) -> Tally {
+        self.board.tally()
     }
 }

@@ -6,7 +6,8 @@ use covr_engine::frames::Floor;
 use covr_engine::machine::{Limits, Travel};
 use covr_engine::time::Span;
 
-use crate::homing::HomingParameters;
+use crate::homing::{HomeBy, HomingParameters};
+use crate::linked::axes::AxesSettings;
 
 /// A whole machine.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +36,7 @@ pub struct Settings {
     pub period: Span,
     /// How homing moves.
     pub homing: HomingParameters,
-    /// What homing looks for.
+    /// What homing looks for. Switches: the long rail's on S4, the cross rail's on S5; with two boards each on its board's S4.
     pub home_by: HomeBy,
     /// Gain of the position loop, 1/s.
     pub position_gain_per_s: f64,
@@ -48,15 +49,6 @@ pub enum Boards {
     One(u8),
     /// Two boards on one line at these addresses: each rail is its board's M1.
     Two([u8; 2]),
-}
-
-/// What homing looks for at the low end of each rail.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HomeBy {
-    /// Switches: the long rail's on S4, the cross rail's on S5; with two boards each on its board's S4.
-    Switches,
-    /// The hard stops.
-    Stops,
 }
 
 /// One axis.
@@ -81,4 +73,18 @@ pub struct VelocityPid {
     pub d: f64,
     /// Speed at full duty, counts a second.
     pub qpps: u32,
+}
+
+impl Settings {
+    /// What the decisions about both axes need of it.
+    pub(super) const fn axes(&self) -> AxesSettings {
+        AxesSettings {
+            limits: self.limits,
+            travel: self.travel,
+            current_limit_amps: self.current_limit_amps,
+            homing: self.homing,
+            home_by: self.home_by,
+            position_gain_per_s: self.position_gain_per_s,
+        }
+    }
 }

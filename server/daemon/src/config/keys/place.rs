@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use covr_engine::intention::RuleName;
 use covr_engine::motion::MotionName;
 use covr_engine::motion::standing::StandingName;
-use covr_gantry::roboclaw::settings::HomeBy;
+use covr_gantry::homing::HomeBy;
 use covr_wire::accepts::Accepts;
 use toml::Value;
 

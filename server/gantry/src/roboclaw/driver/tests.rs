@@ -1,11 +1,13 @@
 //! The driver against motors that do at once what they are told, between stops.
 
-use covr_engine::machine::{Limits, Travel};
-use covr_engine::safety::vetted::Setpoint;
+use covr_engine::frames::Planar;
+use covr_engine::machine::{Drive as DriveState, Homing, Limits, Travel, Trouble};
+use covr_engine::safety::vetted::{Action, Setpoint};
 use proptest::prelude::*;
 
 use super::*;
-use crate::homing::HomingParameters;
+use crate::homing::{HomeBy, HomingParameters};
+use crate::linked::axes::Status;
 use crate::roboclaw::settings::{AxisSettings, Boards};
 
 const COUNTS: [f64; 2] = [46_545.0, 47_787.0];

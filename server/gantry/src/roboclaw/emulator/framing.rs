@@ -13,7 +13,7 @@ use covr_engine::time::Span;
 
 use super::commands::{Shape, Sort};
 use super::crc::check_word;
-use super::line::Moment;
+use crate::emulation::line::Moment;
 
 /// Collects bytes until they are a packet.
 #[derive(Debug, Clone, Default)]

@@ -1,11 +1,15 @@
 //! What goes wrong, as orders of one line each, from the command line or while it runs: [`ORDERS`].
 
-use std::str::{FromStr, SplitWhitespace};
+use std::str::FromStr;
 
 use covr_engine::time::Span;
 
 use super::firmware::Firmware;
+use crate::emulation::words::{Words, Wrong};
 use crate::sim::faults::Direction;
+
+pub use crate::emulation::Axis;
+pub use crate::emulation::words::BadOrder;
 
 /// Every order, with its meaning, for people.
 pub const ORDERS: &str = "\
@@ -67,127 +71,53 @@ pub enum Order {
     After(Span, Box<Self>),
 }
 
-/// An axis of the machine.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis {
-    /// The long rail.
-    X,
-    /// The cross rail.
-    Y,
-}
-
-/// A line that is no order.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("order {line:?}: found {found}, expected {expected}")]
-pub struct BadOrder {
-    line: String,
-    found: String,
-    expected: &'static str,
-}
-
 impl FromStr for Order {
     type Err = BadOrder;
 
     fn from_str(line: &str) -> Result<Self, BadOrder> {
-        let mut words = Words(line.split_whitespace());
-        let order = words.order().and_then(|order| words.end().map(|()| order));
-        order.map_err(|(found, expected)| BadOrder {
-            line: line.to_owned(),
-            found: found.map_or_else(|| "nothing more".to_owned(), |word| format!("{word:?}")),
-            expected,
-        })
+        BadOrder::unless(line, order)
     }
 }
 
-impl Axis {
-    /// Both.
-    pub const BOTH: [Self; 2] = [Self::X, Self::Y];
-
-    pub(super) const fn index(self) -> usize {
-        match self {
-            Self::X => 0,
-            Self::Y => 1,
+fn order(words: &mut Words<'_>) -> Result<Order, Wrong> {
+    Ok(match words.next().as_deref() {
+        Some("lose") => Order::Lose(words.probability()?),
+        Some("flip") => Order::Flip(words.probability()?),
+        Some("late") => Order::Late(words.probability()?, words.millis()?),
+        Some("missing") => Order::Missing(words.probability()?),
+        Some("gap") => Order::Gap(words.probability()?, words.millis()?),
+        Some("brown-out") => Order::BrownOut(words.millis()?),
+        Some("press") => Order::Press(true),
+        Some("release") => Order::Press(false),
+        Some("stick") => {
+            let levels = [("pressed", Some(true)), ("released", Some(false)), ("off", None)];
+            Order::Stick(words.one_of(&levels, "pressed, released or off")?)
         }
-    }
-}
-
-/// The words of a line that are left.
-struct Words<'a>(SplitWhitespace<'a>);
-
-/// What was found instead of what was expected.
-type Wrong<'a> = (Option<&'a str>, &'static str);
-
-impl<'a> Words<'a> {
-    fn order(&mut self) -> Result<Order, Wrong<'a>> {
-        Ok(match self.0.next() {
-            Some("lose") => Order::Lose(self.probability()?),
-            Some("flip") => Order::Flip(self.probability()?),
-            Some("late") => Order::Late(self.probability()?, self.millis()?),
-            Some("missing") => Order::Missing(self.probability()?),
-            Some("gap") => Order::Gap(self.probability()?, self.millis()?),
-            Some("brown-out") => Order::BrownOut(self.millis()?),
-            Some("press") => Order::Press(true),
-            Some("release") => Order::Press(false),
-            Some("stick") => {
-                let levels = [("pressed", Some(true)), ("released", Some(false)), ("off", None)];
-                Order::Stick(self.one_of(&levels, "pressed, released or off")?)
-            }
-            Some("switch") => {
-                let levels = [("active", Some(true)), ("inactive", Some(false)), ("off", None)];
-                Order::Switch(self.axis()?, self.one_of(&levels, "active, inactive or off")?)
-            }
-            Some("slip") => Order::Slip(self.axis()?, self.number(0.0, 1.0, "a share from 0 to 1")?),
-            Some("jam") => {
-                Order::Jam(self.axis()?, self.one_of(&[("on", true), ("off", false)], "on or off")?)
-            }
-            Some("runaway") => {
-                let (up, down) = (Some(Direction::Positive), Some(Direction::Negative));
-                let ways = [("positive", up), ("negative", down), ("off", None)];
-                Order::Runaway(self.axis()?, self.one_of(&ways, "positive, negative or off")?)
-            }
-            Some("push") => Order::Push(self.axis()?, self.number(-5e3, 5e3, "newtons from -5000 to 5000")?),
-            Some("supply") => Order::Supply(self.number(0.0, 60.0, "volts from 0 to 60")?),
-            Some("temperature") => Order::Temperature(self.number(0.0, 200.0, "degrees from 0 to 200")?),
-            Some("firmware") => {
-                let name = self.0.next();
-                let firmware = name.and_then(|name| name.parse().ok());
-                Order::Firmware(firmware.ok_or((name, FIRMWARE_NAMES))?)
-            }
-            Some("after") => {
-                let span = Span::from_secs(self.number(0.0, 86_400.0, "seconds from 0 to 86400")?);
-                Order::After(span, Box::new(self.order()?))
-            }
-            found => return Err((found, ORDER_NAMES)),
-        })
-    }
-
-    fn probability(&mut self) -> Result<f64, Wrong<'a>> {
-        self.number(0.0, 1.0, "a probability from 0 to 1")
-    }
-
-    fn millis(&mut self) -> Result<Span, Wrong<'a>> {
-        Ok(Span::from_secs(self.number(0.0, 60_000.0, "milliseconds from 0 to 60000")? * 1e-3))
-    }
-
-    fn axis(&mut self) -> Result<Axis, Wrong<'a>> {
-        self.one_of(&[("x", Axis::X), ("y", Axis::Y)], "x or y")
-    }
-
-    fn number(&mut self, least: f64, most: f64, expected: &'static str) -> Result<f64, Wrong<'a>> {
-        let word = self.0.next();
-        let number = word.and_then(|word| word.parse().ok()).filter(|number| (least..=most).contains(number));
-        number.ok_or((word, expected))
-    }
-
-    fn one_of<T: Copy>(&mut self, choices: &[(&str, T)], expected: &'static str) -> Result<T, Wrong<'a>> {
-        let word = self.0.next();
-        let chosen = choices.iter().find(|(name, _)| Some(*name) == word);
-        chosen.map(|(_, value)| *value).ok_or((word, expected))
-    }
-
-    fn end(&mut self) -> Result<(), Wrong<'a>> {
-        self.0.next().map_or(Ok(()), |word| Err((Some(word), "the end of the line")))
-    }
+        Some("switch") => {
+            let levels = [("active", Some(true)), ("inactive", Some(false)), ("off", None)];
+            Order::Switch(words.axis()?, words.one_of(&levels, "active, inactive or off")?)
+        }
+        Some("slip") => Order::Slip(words.axis()?, words.number(0.0, 1.0, "a share from 0 to 1")?),
+        Some("jam") => Order::Jam(words.axis()?, words.one_of(&[("on", true), ("off", false)], "on or off")?),
+        Some("runaway") => {
+            let (up, down) = (Some(Direction::Positive), Some(Direction::Negative));
+            let ways = [("positive", up), ("negative", down), ("off", None)];
+            Order::Runaway(words.axis()?, words.one_of(&ways, "positive, negative or off")?)
+        }
+        Some("push") => Order::Push(words.axis()?, words.number(-5e3, 5e3, "newtons from -5000 to 5000")?),
+        Some("supply") => Order::Supply(words.number(0.0, 60.0, "volts from 0 to 60")?),
+        Some("temperature") => Order::Temperature(words.number(0.0, 200.0, "degrees from 0 to 200")?),
+        Some("firmware") => {
+            let name = words.next();
+            let firmware = name.as_ref().and_then(|name| name.parse().ok());
+            Order::Firmware(firmware.ok_or((name, FIRMWARE_NAMES))?)
+        }
+        Some("after") => {
+            let span = Span::from_secs(words.number(0.0, 86_400.0, "seconds from 0 to 86400")?);
+            Order::After(span, Box::new(order(words)?))
+        }
+        found => return Err((found.map(str::to_owned), ORDER_NAMES)),
+    })
 }
 
 const ORDER_NAMES: &str = "lose, flip, late, missing, gap, brown-out, press, release, stick, switch, slip, jam, \

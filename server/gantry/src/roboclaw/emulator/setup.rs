@@ -4,9 +4,11 @@ use covr_engine::time::Span;
 
 use super::firmware::Firmware;
 use super::framing::ADDRESSES;
-use super::orders::Axis;
 use super::settings::{PositionPid, Settings, VelocityPid};
+use crate::emulation::Axis;
 use crate::sim::parameters::{MachineParameters, ParameterProblem};
+
+pub use crate::emulation::rig::EndSwitches;
 
 /// What to emulate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,17 +41,6 @@ pub enum Wiring {
     OneBoard,
     /// Two boards on one line with addresses in a row: x on M1 of the first, y on M1 of the second.
     TwoBoards,
-}
-
-/// Which ends of an axis have a switch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EndSwitches {
-    /// None: hard stops alone.
-    None,
-    /// The low end.
-    Low,
-    /// Both, on one pin.
-    Both,
 }
 
 /// What is in the boards' EEPROM when they come.

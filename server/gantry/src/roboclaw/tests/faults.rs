@@ -98,10 +98,7 @@ fn a_board_whose_switches_were_not_set_up_is_driven_only_after_it_was_off() {
     let machine = MachineParameters::paper(travel());
     let setup = Setup { baud: 460_800, firmware: "4.1.34".parse().unwrap(), ..Setup::paper(machine) };
     let emulator = Emulator::new(setup).unwrap();
-    let world = World { emulator, now: Time::from_micros(1_000), begun: Instant::now(), sent: Vec::new() };
-    let port = VirtualPort(Arc::new(Mutex::new(world)));
-    port.with(|world| world.emulator.poll(world.now));
-    port.wait(Span::from_secs(2.0));
+    let port = VirtualPort::new(emulator);
     assert!(matches!(Bench::try_new(USUAL, &port), Err(Refused::SwitchOffAndOn { address: 0x80 })));
     Bench::switch_off_and_on(&port);
     let mut bench = Bench::try_new(USUAL, &port).unwrap();
@@ -117,7 +114,7 @@ fn a_stop_while_it_homes_goes_out_before_anything_else() {
     for (action, command) in [(Action::Hold, Command::SpeedAccelBoth), (Action::Release, Command::DutyBoth)] {
         bench.port.with(|world| world.sent.clear());
         bench.cycle(action).unwrap();
-        assert_eq!(bench.port.with(|world| world.sent[0]), command as u8, "{action:?}");
+        assert_eq!(bench.port.with(|world| world.sent[0][1]), command as u8, "{action:?}");
         for _ in 0..100 {
             bench.cycle(Action::Home).unwrap();
         }

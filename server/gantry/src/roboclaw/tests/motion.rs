@@ -1,6 +1,7 @@
 //! What it does when all is well.
 
 use super::*;
+use crate::linked::bench::{CONTROL_PERIOD, Off, drive, velocity_covers};
 
 const KINDS: [Kind; 5] = [
     USUAL,
@@ -19,71 +20,6 @@ fn it_finds_the_room_on_every_kind_of_boards() {
         assert!(off_m < 0.003, "{} {:?} {:?}: {off_m} m off", kind.firmware, kind.boards, kind.home_by);
     }
 }
-
-/// Greatest deviations on a course, and the last: what R6 looks at.
-#[derive(Default)]
-struct Off {
-    greatest_m: f64,
-    greatest_mps: f64,
-    greatest_amps: f64,
-    last_m: f64,
-}
-
-/// A way of 2 m at the limits of an axis: place, velocity and acceleration after so long. Averaged over the time that the jerk limit
-/// gives a change of acceleration.
-fn course(t: f64) -> (f64, f64, f64) {
-    let parts = 16;
-    let at = |part: i32| raw_course(t - RAMP_SECS * f64::from(part) / f64::from(parts));
-    let sum = (0..=parts).map(at).fold((0.0, 0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1, sum.2 + of.2));
-    let count = f64::from(parts + 1);
-    (sum.0 / count, sum.1 / count, sum.2 / count)
-}
-
-fn raw_course(t: f64) -> (f64, f64, f64) {
-    let (speed, up, down, way) = (1.0, 1.25, 2.5, 2.0);
-    let (up_secs, down_secs) = (speed / up, speed / down);
-    let whole_secs = way / speed + 0.5 * (up_secs + down_secs);
-    if t < 0.0 {
-        (0.0, 0.0, 0.0)
-    } else if t < up_secs {
-        (0.5 * up * t * t, up * t, up)
-    } else if t < whole_secs - down_secs {
-        (speed * (t - 0.5 * up_secs), speed, 0.0)
-    } else if t < whole_secs {
-        let left = whole_secs - t;
-        (way - 0.5 * down * left * left, down * left, -down)
-    } else {
-        (way, 0.0, 0.0)
-    }
-}
-
-/// Drive that way along both axes, and stay there.
-fn drive(bench: &mut Bench) -> Off {
-    let from = bench.session.report().position;
-    let begun = bench.port.time();
-    let both = Planar::new(1.0, 1.0);
-    let mut off = Off::default();
-    loop {
-        let t = (bench.port.time() - begun).secs();
-        let (s, v, a) = course(t);
-        bench.cycle(setpoint(from + both * s, both * v, both * a)).unwrap();
-        let report = bench.session.report();
-        let since = (report.answered_at - begun).secs() - t;
-        let [x, y] = report.current_amps;
-        off.greatest_amps = off.greatest_amps.max(x).max(y);
-        off.greatest_mps = off.greatest_mps.max((report.velocity - both * (v + a * since)).norm());
-        let (true_place, _) = bench.truth();
-        let since = (bench.port.time() - begun).secs() - t;
-        off.greatest_m = off.greatest_m.max((true_place - (from + both * (s + v * since))).norm());
-        if t > 4.5 {
-            off.last_m = (true_place - (from + both * s)).norm();
-            return off;
-        }
-    }
-}
-
-/// 2.5 m/s2 at 80 m/s3.
-const RAMP_SECS: f64 = 2.5 / 80.0;
 
 #[test]
 fn it_follows_a_course_at_its_limits_on_every_kind_of_boards() {
@@ -124,10 +60,6 @@ fn without_a_newer_order_it_rests_within_the_cap_and_a_brake() {
     let most = velocity_covers(1.0, 0.05 + 0.06, 2.5);
     assert!(velocity.norm() < 0.01, "still at {} m/s", velocity.norm());
     assert!(at.x - from.x < most, "{} m, at most {most} m", at.x - from.x);
-}
-
-fn velocity_covers(mps: f64, secs: f64, braking_mps2: f64) -> f64 {
-    mps * secs + mps * mps / (2.0 * braking_mps2)
 }
 
 #[test]

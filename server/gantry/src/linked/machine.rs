@@ -1,43 +1,58 @@
 //! The machine as the control thread sees it.
 
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread::JoinHandle;
 
 use arc_swap::ArcSwap;
-use covr_engine::frames::Planar;
+use covr_engine::frames::{Floor, Planar};
 use covr_engine::machine::{Drive, Homing, Limits, MachineReport, Travel, Trouble};
 use covr_engine::safety::vetted::{Action, Vetted};
-use covr_engine::time::Time;
+use covr_engine::time::{Span, Time};
 
-use super::driver::Order;
-use super::link::{LONGEST_START, Link, NO_ORDER, Shared, State};
-use super::port::Serial;
-use super::settings::Settings;
+use super::axes::Order;
+use super::link::{LONGEST_START, Link, NO_ORDER, NotBegun, Session, Shared, State};
 use crate::contract::{Gantry, Health, LinkError, NotTaken, Reading};
 
-/// One or two RoboClaws on a serial line.
-pub struct RoboClaw {
+/// A machine whose controller is driven by a link thread.
+pub struct Linked {
+    name: &'static str,
     limits: Limits,
     travel: Travel,
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl RoboClaw {
-    /// Start its link thread, and wait a little until it has reached the boards. A machine that is not there yet is one that does
-    /// not answer: it is tried again for as long as it takes.
+/// What is known of a machine before its controller is reached.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Machine {
+    /// What people call it; its thread too.
+    pub name: &'static str,
+    /// What each axis may do.
+    pub limits: Limits,
+    /// Where the column's centre can stand, room frame.
+    pub travel: Travel,
+    /// Where the column is parked when the power comes on, room frame.
+    pub parked: Floor,
+    /// Longest time from one look to the next.
+    pub period: Span,
+}
+
+impl Linked {
+    /// Start its link thread, and wait a little until it has reached the controller. A machine that is not there yet is one that
+    /// does not answer: it is tried again for as long as it takes.
     ///
-    /// `clock` tells the server's time; `on_thread` is the first thing that the thread does, such as asking for its priority.
-    pub fn start(
-        settings: Settings,
+    /// `open` reaches the controller; `clock` tells the server's time; `on_thread` is the first thing that the thread does, such as
+    /// asking for its priority.
+    pub(crate) fn start<S: Session>(
+        machine: Machine,
+        open: impl FnMut(Floor) -> Result<S, NotBegun<S::Refused>> + Send + 'static,
         clock: impl Fn() -> Time + Send + 'static,
         on_thread: impl FnOnce() + Send + 'static,
     ) -> std::io::Result<Self> {
         let report = MachineReport {
             answered_at: Time::ZERO,
-            position: settings.parked,
+            position: machine.parked,
             velocity: Planar::ZERO,
             current_amps: [0.0; 2],
             drive: Drive::Released,
@@ -51,10 +66,9 @@ impl RoboClaw {
             quit: AtomicBool::new(false),
             begun: (Mutex::new(false), Condvar::new()),
         });
-        let (limits, travel) = (settings.limits, settings.travel);
-        let (port, baud): (PathBuf, u32) = (settings.port.clone(), settings.baud);
-        let link = Link { settings, shared: shared.clone(), open: move || Serial::open(&port, baud), clock };
-        let thread = std::thread::Builder::new().name("roboclaw".into()).spawn(move || {
+        let Machine { name, limits, travel, period, .. } = machine;
+        let link = Link { period, shared: shared.clone(), open, clock };
+        let thread = std::thread::Builder::new().name(name.into()).spawn(move || {
             on_thread();
             link.run();
         })?;
@@ -62,7 +76,7 @@ impl RoboClaw {
             // Whether it was reached in time or not, the state says so.
             drop(shared.begun.1.wait_timeout_while(begun, LONGEST_START, |begun| !*begun));
         }
-        Ok(Self { limits, travel, shared, thread: Some(thread) })
+        Ok(Self { name, limits, travel, shared, thread: Some(thread) })
     }
 
     fn silence(&self, now: Time, state: &State) -> LinkError {
@@ -70,7 +84,7 @@ impl RoboClaw {
     }
 }
 
-impl Gantry for RoboClaw {
+impl Gantry for Linked {
     fn read(&mut self, now: Time) -> Reading {
         let state = self.shared.state.load();
         let link = if state.answers { Ok(()) } else { Err(self.silence(now, &state)) };
@@ -110,7 +124,7 @@ impl Gantry for RoboClaw {
     }
 
     fn name(&self) -> &str {
-        "RoboClaw"
+        self.name
     }
 
     fn travel(&self) -> Travel {
@@ -122,13 +136,13 @@ impl Gantry for RoboClaw {
     }
 }
 
-impl Drop for RoboClaw {
+impl Drop for Linked {
     /// The last order still goes out.
     fn drop(&mut self) {
         self.shared.quit.store(true, Ordering::Release);
         if let Some(thread) = self.thread.take() {
             thread.thread().unpark();
-            // A thread that panicked has nothing more to say; the board's own timeout stops it.
+            // A thread that panicked has nothing more to say; the controller's own dead-man stops it.
             drop(thread.join());
         }
     }

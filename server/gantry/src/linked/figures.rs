@@ -5,9 +5,20 @@ use std::time::{Duration, Instant};
 
 use covr_engine::machine::Trouble;
 
-use super::exchange::{Lost, Tally};
-use super::firmware::Firmware;
 use crate::contract::{Health, LinkFigures};
+
+/// What a line has been like since it was opened.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Exchanges that were answered.
+    pub answered: u64,
+    /// Exchanges that were not answered, or not well.
+    pub lost: u64,
+    /// Of these, sent again.
+    pub repeated: u64,
+    /// Bytes, either way.
+    pub bytes: u64,
+}
 
 /// Counts and last values.
 #[derive(Debug, Default)]
@@ -22,9 +33,9 @@ pub struct Figures {
 
 impl Figures {
     /// Boards with this firmware were found.
-    pub fn found(&mut self, (text, firmware): (&str, Firmware)) {
+    pub fn found(&mut self, (text, profile): (&str, &str)) {
         self.now.firmware = Some(text.to_owned());
-        self.now.profile = Some(firmware.name().to_owned());
+        self.now.profile = Some(profile.to_owned());
         self.now.condition = String::new();
         self.now.link.connections += 1;
         self.before = Tally::default();
@@ -50,9 +61,9 @@ impl Figures {
     }
 
     /// A cycle was lost, for this reason.
-    pub fn lost(&mut self, why: &Lost) {
+    pub fn lost(&mut self, why: String) {
         self.now.link.cycles_lost += 1;
-        self.now.link.last_loss = why.to_string();
+        self.now.link.last_loss = why;
     }
 
     pub fn volts(&mut self, volts: Option<f64>) {

@@ -6,18 +6,68 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::time::{Duration, Instant};
 
 use arc_swap::ArcSwap;
+use covr_engine::frames::Floor;
 use covr_engine::machine::{MachineReport, Trouble};
 use covr_engine::safety::vetted::Action;
-use covr_engine::time::Time;
+use covr_engine::time::{Span, Time};
 
-use super::board::Refused;
-use super::driver::Order;
-use super::exchange::Lost;
-use super::figures::Figures;
-use super::port::Port;
-use super::session::Session;
-use super::settings::Settings;
+use super::axes::Order;
+use super::figures::{Figures, Tally};
 use crate::contract::Health;
+
+/// Controllers from being found until they are lost.
+pub trait Session {
+    /// Why they are not driven.
+    type Refused: Refusal;
+
+    /// Tell them what the order means, then look. Whether they confirmed that they have it.
+    fn cycle(&mut self, order: &Order, clock: &dyn Fn() -> Time) -> Result<bool, Self::Refused>;
+
+    /// Look at what changes slowly, one thing a turn, in one try: what is lost here is asked for again in a later turn, and a command
+    /// may be waiting. Whether they still have the settings that they were given.
+    fn slow_look(&mut self, turn: u64, figures: &mut Figures) -> bool;
+
+    /// What the machine says of itself.
+    fn report(&self) -> MachineReport;
+
+    /// Its place is lost and it is let go: it is to be found and configured anew.
+    fn is_over(&self) -> bool;
+
+    /// The firmware's own words, and the profile's name.
+    fn firmware(&self) -> (&str, &str);
+
+    /// What the line has been like.
+    fn tally(&self) -> Tally;
+}
+
+/// Why a controller is not driven, as far as the link has to know.
+pub trait Refusal: std::error::Error {
+    /// What it is called on every surface.
+    fn trouble(&self) -> Trouble;
+
+    /// An exchange that was lost, if it is one: another may go well.
+    fn loss(&self) -> Option<Loss>;
+}
+
+/// How an exchange was lost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loss {
+    /// There was no good answer.
+    Answer,
+    /// The port is gone.
+    Port,
+}
+
+/// Why no session began.
+#[derive(Debug, thiserror::Error)]
+pub enum NotBegun<R: std::error::Error> {
+    /// There is no such port.
+    #[error("cannot open the port: {0}")]
+    NoPort(std::io::Error),
+    /// There is, and whoever is there is not driven.
+    #[error(transparent)]
+    Refused(R),
+}
 
 /// What control thread and link thread share. Neither ever waits for the other.
 pub struct Shared {
@@ -44,26 +94,26 @@ pub struct State {
 
 /// The thread's own.
 pub struct Link<O, C> {
-    pub settings: Settings,
+    /// Longest time from one look to the next.
+    pub period: Span,
     pub shared: Arc<Shared>,
+    /// Open the port and bring what is there to where it can be driven; the column stands there, as far as known.
     pub open: O,
     pub clock: C,
 }
 
 /// Why the boards were lost.
 #[derive(Debug, thiserror::Error)]
-enum Ended {
-    #[error("cannot open the port: {0}")]
-    NoPort(std::io::Error),
+enum Ended<R: std::error::Error> {
     #[error(transparent)]
-    Refused(#[from] Refused),
+    NotBegun(#[from] NotBegun<R>),
     #[error("no good answer for {} ms; the last: {last}", .after.as_millis())]
-    Silent { after: Duration, last: Lost },
-    #[error("a board has restarted, or its counts jumped: it is configured anew")]
+    Silent { after: Duration, last: R },
+    #[error("the controller has restarted, or its count jumped: it is configured anew")]
     Restarted,
 }
 
-impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
+impl<S: Session, O: FnMut(Floor) -> Result<S, NotBegun<S::Refused>>, C: Fn() -> Time> Link<O, C> {
     /// Until told to quit.
     pub fn run(mut self) {
         let mut figures = Figures::default();
@@ -71,7 +121,12 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
             let Err(why) = self.session(&mut figures) else { return };
             self.say_lost(&why, &mut figures);
             // Boards that do not answer yet may still be starting; whatever else is wrong stays so.
-            if !matches!(why, Ended::Refused(Refused::Lost(_)) | Ended::Silent { .. }) {
+            let may_be_starting = match &why {
+                Ended::NotBegun(NotBegun::Refused(why)) => why.loss().is_some(),
+                Ended::Silent { .. } => true,
+                Ended::NotBegun(NotBegun::NoPort(_)) | Ended::Restarted => false,
+            };
+            if !may_be_starting {
                 self.say_begun();
             }
             std::thread::park_timeout(RETRY);
@@ -79,10 +134,9 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
     }
 
     /// From opening the port until the boards are lost; well ended only when told to quit.
-    fn session(&mut self, figures: &mut Figures) -> Result<(), Ended> {
-        let port = (self.open)().map_err(Ended::NoPort)?;
+    fn session(&mut self, figures: &mut Figures) -> Result<(), Ended<S::Refused>> {
         let stood_at = self.shared.state.load().report.position;
-        let mut boards = Session::open(port, &self.settings, stood_at)?;
+        let mut boards = (self.open)(stood_at)?;
         figures.found(boards.firmware());
         let mut good_at = Instant::now();
         let mut cycle = 0_u64;
@@ -100,21 +154,20 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
                         return Err(Ended::Restarted);
                     }
                 }
-                Err(Refused::Lost(last @ Lost::Port(_))) => {
-                    return Err(Ended::Silent { after: good_at.elapsed(), last });
-                }
-                Err(Refused::Lost(last)) if good_at.elapsed() < LONGEST_SILENCE => {
-                    figures.lost(&last);
-                }
-                Err(Refused::Lost(last)) => return Err(Ended::Silent { after: good_at.elapsed(), last }),
-                Err(refused) => return Err(refused.into()),
+                Err(refused) => match refused.loss() {
+                    Some(Loss::Answer) if good_at.elapsed() < LONGEST_SILENCE => {
+                        figures.lost(refused.to_string());
+                    }
+                    Some(_) => return Err(Ended::Silent { after: good_at.elapsed(), last: refused }),
+                    None => return Err(NotBegun::Refused(refused).into()),
+                },
             }
             if is_last {
                 return Ok(());
             }
             cycle += 1;
-            if cycle.is_multiple_of(SLOW_EVERY) {
-                slow_look(&mut boards, cycle / SLOW_EVERY, figures)?;
+            if cycle.is_multiple_of(SLOW_EVERY) && !boards.slow_look(cycle / SLOW_EVERY, figures) {
+                return Err(Ended::Restarted);
             }
             self.wait_for_news(&order, begun);
         }
@@ -131,15 +184,11 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
         self.shared.state.store(Arc::new(state));
     }
 
-    fn say_lost(&self, why: &Ended, figures: &mut Figures) {
+    fn say_lost(&self, why: &Ended<S::Refused>, figures: &mut Figures) {
         let trouble = match why {
-            Ended::NoPort(_) => Trouble::NoPort,
-            Ended::Refused(Refused::Lost(_)) | Ended::Silent { .. } => Trouble::NoAnswer,
-            Ended::Refused(Refused::UnknownFirmware { .. } | Refused::DifferentFirmwares(..)) => {
-                Trouble::UnknownFirmware
-            }
-            Ended::Refused(Refused::NotKept { .. }) => Trouble::NotConfigured,
-            Ended::Refused(Refused::SwitchOffAndOn { .. }) => Trouble::SwitchOffAndOn,
+            Ended::NotBegun(NotBegun::NoPort(_)) => Trouble::NoPort,
+            Ended::NotBegun(NotBegun::Refused(why)) => why.trouble(),
+            Ended::Silent { .. } => Trouble::NoAnswer,
             Ended::Restarted => Trouble::Restarted,
         };
         figures.ended(why.to_string());
@@ -160,7 +209,7 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
 
     /// Until there is another order, or the period is over. The control thread wakes this one with each order.
     fn wait_for_news(&self, order: &Arc<Order>, begun: Instant) {
-        let period = Duration::from_micros(self.settings.period.micros().max(0) as u64);
+        let period = Duration::from_micros(self.period.micros().max(0) as u64);
         loop {
             let left = period.saturating_sub(begun.elapsed());
             let is_news = !Arc::ptr_eq(order, &self.shared.order.load());
@@ -172,26 +221,10 @@ impl<P: Port, O: FnMut() -> std::io::Result<P>, C: Fn() -> Time> Link<O, C> {
     }
 }
 
-/// What changes slowly, one thing at a time.
-fn slow_look<P: Port>(boards: &mut Session<P>, turn: u64, figures: &mut Figures) -> Result<(), Ended> {
-    let board = boards.board();
-    // A lost answer here is nothing to act on: the next turn asks again, and the fast looks watch the link.
-    match turn % 3 {
-        0 => figures.volts(board.main_volts().ok()),
-        1 => figures.temperature(board.temperature_c().ok()),
-        _ => {
-            if matches!(board.keeps_its_timeout(), Ok(false)) {
-                return Err(Ended::Restarted);
-            }
-        }
-    }
-    Ok(())
-}
-
 /// Boards that are gone are tried again so often.
 const RETRY: Duration = Duration::from_millis(250);
 /// Without a good look for so long the port is opened anew. R8 has stopped everything long before.
-const LONGEST_SILENCE: Duration = Duration::from_millis(500);
+pub const LONGEST_SILENCE: Duration = Duration::from_millis(500);
 /// One slow thing after so many cycles.
 const SLOW_EVERY: u64 = 10;
 /// What holds before the control thread's first order.

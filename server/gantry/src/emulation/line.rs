@@ -7,7 +7,7 @@ use covr_engine::time::{Span, Time};
 
 /// Both directions.
 #[derive(Debug, Clone)]
-pub(super) struct Line {
+pub(crate) struct Line {
     byte_nanos: i64,
     /// Bytes reach the host only at multiples of this, as through a USB bridge.
     burst_nanos: Option<i64>,
@@ -24,31 +24,31 @@ struct Direction {
 
 /// A reply on its way to the host.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Reply {
+pub(crate) struct Reply {
     /// When the board begins to send.
-    pub(super) from: Moment,
+    pub(crate) from: Moment,
     /// What it sends.
-    pub(super) bytes: Vec<u8>,
+    pub(crate) bytes: Vec<u8>,
     /// It pauses after so many bytes for so long.
-    pub(super) pause: Option<(usize, Span)>,
+    pub(crate) pause: Option<(usize, Span)>,
 }
 
 /// Nanoseconds on the clock of [`Time`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Moment(pub(super) i64);
+pub(crate) struct Moment(pub(crate) i64);
 
 impl Moment {
     /// The first microsecond that is not before it.
-    pub(super) const fn rounded_up(self) -> Time {
+    pub(crate) const fn rounded_up(self) -> Time {
         Time::from_micros(self.0.div_euclid(1_000) + (self.0.rem_euclid(1_000) != 0) as i64)
     }
 
     /// The microsecond that it lies in.
-    pub(super) const fn rounded_down(self) -> Time {
+    pub(crate) const fn rounded_down(self) -> Time {
         Time::from_micros(self.0.div_euclid(1_000))
     }
 
-    pub(super) const fn later(self, span: Span) -> Self {
+    pub(crate) const fn later(self, span: Span) -> Self {
         Self(self.0.saturating_add(span.micros().saturating_mul(1_000)))
     }
 }
@@ -60,7 +60,7 @@ impl From<Time> for Moment {
 }
 
 impl Line {
-    pub(super) fn new(baud: u32, burst: Option<Span>) -> Self {
+    pub(crate) fn new(baud: u32, burst: Option<Span>) -> Self {
         Self {
             byte_nanos: BITS_A_BYTE * 1_000_000_000 / i64::from(baud),
             burst_nanos: burst.map(|burst| burst.micros() * 1_000),
@@ -70,17 +70,17 @@ impl Line {
     }
 
     /// The host hands over a byte; none when the line swallows it, which takes as long.
-    pub(super) fn send_to_board(&mut self, now: Time, byte: Option<u8>) {
+    pub(crate) fn send_to_board(&mut self, now: Time, byte: Option<u8>) {
         self.to_board.send(Moment::from(now).0, self.byte_nanos, byte);
     }
 
     /// The next byte that is at the boards by `now`, and since when.
-    pub(super) fn next_at_board(&mut self, now: Time) -> Option<(Moment, u8)> {
+    pub(crate) fn next_at_board(&mut self, now: Time) -> Option<(Moment, u8)> {
         self.to_board.next(Moment::from(now).0)
     }
 
     /// A board answers.
-    pub(super) fn send_to_host(&mut self, reply: &Reply, mut noise: impl FnMut(u8) -> Option<u8>) {
+    pub(crate) fn send_to_host(&mut self, reply: &Reply, mut noise: impl FnMut(u8) -> Option<u8>) {
         let mut earliest = reply.from;
         for (index, byte) in reply.bytes.iter().enumerate() {
             if let Some((after, span)) = reply.pause
@@ -93,7 +93,7 @@ impl Line {
     }
 
     /// Everything that is at the host by `now`.
-    pub(super) fn at_host(&mut self, now: Time) -> Vec<u8> {
+    pub(crate) fn at_host(&mut self, now: Time) -> Vec<u8> {
         let visible = Moment::from(now).0;
         // What was over by the last burst before now.
         let over = self.burst_nanos.map_or(visible, |burst| visible.div_euclid(burst) * burst);
@@ -101,7 +101,7 @@ impl Line {
     }
 
     /// When the next byte is over, in either direction, as the boards or the host can see it.
-    pub(super) fn next_due(&self) -> Option<Time> {
+    pub(crate) fn next_due(&self) -> Option<Time> {
         let to_host =
             self.to_host.bytes.front().map(|(over, _)| {
                 self.burst_nanos.map_or(*over, |burst| -((-over).div_euclid(burst)) * burst)
@@ -111,18 +111,18 @@ impl Line {
     }
 
     /// Bytes that the host has handed over and that are still on their way.
-    pub(super) fn backlog(&self) -> usize {
+    pub(crate) fn backlog(&self) -> usize {
         self.to_board.bytes.len()
     }
 
     /// Whatever is on its way is lost.
-    pub(super) fn cut(&mut self) {
+    pub(crate) fn cut(&mut self) {
         self.to_board.bytes.clear();
         self.to_host.bytes.clear();
     }
 
     /// What boards have not sent yet is never sent.
-    pub(super) fn silence_boards(&mut self, now: Time) {
+    pub(crate) fn silence_boards(&mut self, now: Time) {
         let now = Moment::from(now).0;
         self.to_host.bytes.retain(|(over, _)| *over <= now);
         self.to_host.free_at = self.to_host.free_at.min(now);

@@ -1,19 +1,29 @@
-//! What the boards drive: the motors of the simulated machine, their encoders and end switches, and the supply.
+//! What a controller drives: the motors of the simulated machine, their encoders and end switches, and the supply.
 
 use crate::sim::faults::AxisFaults;
 use crate::sim::parameters::MachineParameters;
 use crate::sim::plant::{Plant, STEP_MICROS};
 
-use super::orders::Axis;
-use super::setup::EndSwitches;
+use super::{Axis, AxisTruth};
+
+/// Which ends of an axis have a switch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EndSwitches {
+    /// None: hard stops alone.
+    None,
+    /// The low end.
+    Low,
+    /// Both, on one pin.
+    Both,
+}
 
 /// Both axes.
 #[derive(Debug, Clone)]
-pub(super) struct Rig {
-    pub(super) faults: [AxisFaults; 2],
-    pub(super) supply_volts: f64,
+pub(crate) struct Rig {
+    pub(crate) faults: [AxisFaults; 2],
+    pub(crate) supply_volts: f64,
     /// End switches that are stuck at active, or not.
-    pub(super) stuck_switches: [Option<bool>; 2],
+    pub(crate) stuck_switches: [Option<bool>; 2],
     plants: [Plant; 2],
     volts: [Option<f64>; 2],
     /// Below the first and above the second the switch is active, m.
@@ -21,7 +31,7 @@ pub(super) struct Rig {
 }
 
 impl Rig {
-    pub(super) fn new(machine: &MachineParameters, end_switches: EndSwitches) -> Self {
+    pub(crate) fn new(machine: &MachineParameters, end_switches: EndSwitches) -> Self {
         let MachineParameters { travel, start, .. } = machine;
         let outside_m = machine.homing.switch_outside_m;
         let places = |low_m: f64, high_m: f64| match end_switches {
@@ -43,7 +53,7 @@ impl Rig {
     }
 
     /// This share of the supply on a motor from now on, or its bridge open.
-    pub(super) fn apply(&mut self, axis: Axis, duty: Option<f64>, maximum_amps: f64) {
+    pub(crate) fn apply(&mut self, axis: Axis, duty: Option<f64>, maximum_amps: f64) {
         let index = axis.index();
         self.plants[index].limit_current(maximum_amps);
         self.volts[index] = match (duty, self.faults[index].runaway) {
@@ -53,12 +63,12 @@ impl Rig {
     }
 
     /// A force from outside, N.
-    pub(super) const fn push(&mut self, axis: Axis, force_n: f64) {
+    pub(crate) const fn push(&mut self, axis: Axis, force_n: f64) {
         self.plants[axis.index()].push_n = force_n;
     }
 
     /// A millisecond.
-    pub(super) fn tick(&mut self) {
+    pub(crate) fn tick(&mut self) {
         for ((plant, volts), faults) in self.plants.iter_mut().zip(self.volts).zip(&self.faults) {
             for _ in 0..STEPS_A_TICK {
                 plant.step(volts, faults);
@@ -66,29 +76,39 @@ impl Rig {
         }
     }
 
-    pub(super) fn counts(&self, axis: Axis) -> i64 {
+    pub(crate) fn truth(&self, axis: Axis) -> AxisTruth {
+        AxisTruth {
+            position_m: self.position_m(axis),
+            speed_mps: self.speed_mps(axis),
+            amps: self.amps(axis),
+            counts: self.counts(axis),
+            is_switch_active: self.is_switch_active(axis),
+        }
+    }
+
+    pub(crate) fn counts(&self, axis: Axis) -> i64 {
         self.plants[axis.index()].counts()
     }
 
-    pub(super) const fn amps(&self, axis: Axis) -> f64 {
+    pub(crate) const fn amps(&self, axis: Axis) -> f64 {
         self.plants[axis.index()].amps()
     }
 
-    pub(super) const fn position_m(&self, axis: Axis) -> f64 {
+    pub(crate) const fn position_m(&self, axis: Axis) -> f64 {
         self.plants[axis.index()].position_m()
     }
 
-    pub(super) const fn speed_mps(&self, axis: Axis) -> f64 {
+    pub(crate) const fn speed_mps(&self, axis: Axis) -> f64 {
         self.plants[axis.index()].speed_mps()
     }
 
-    pub(super) fn is_switch_active(&self, axis: Axis) -> bool {
+    pub(crate) fn is_switch_active(&self, axis: Axis) -> bool {
         let (low_m, high_m) = self.switches_m[axis.index()];
         let at_m = self.position_m(axis);
         self.stuck_switches[axis.index()].unwrap_or(at_m <= low_m || at_m >= high_m)
     }
 }
 
-/// The board's period.
-pub(super) const TICK_MICROS: i64 = 1_000;
+/// The controller's period.
+pub(crate) const TICK_MICROS: i64 = 1_000;
 const STEPS_A_TICK: i64 = TICK_MICROS / STEP_MICROS;
