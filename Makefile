@@ -66,3 +66,4 @@ test-e2e: build
 	@# First light once more, unchanged, on emulated boards over a pseudo-terminal. The kernel carries its bytes at normal priority: a host that
 	@# stalls for 100 ms is a silent machine, so a test is tried twice.
 	cd tests/e2e && COVR_MACHINE=roboclaw npm test -- --retry=1 reach stop prior restart machine
+	cd tests/e2e && COVR_MACHINE=odrive npm test -- --retry=1 reach stop prior restart machine

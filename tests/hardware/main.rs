@@ -31,3 +31,8 @@ fn one_roboclaw_over_a_pseudo_terminal_conforms() {
 fn two_roboclaws_of_an_older_firmware_conform() {
     conforms(&mut Boards::emulated(&["--firmware", "older", "--boards", "2"], 460_800, 0x81));
 }
+
+#[test]
+fn an_odrive_over_a_pseudo_terminal_conforms() {
+    conforms(&mut Boards::odrive(&[]));
+}

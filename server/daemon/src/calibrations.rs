@@ -20,7 +20,7 @@ use tokio::sync::{Mutex, watch};
 
 pub use bench::Bench;
 
-use crate::config::Config;
+use crate::config::{Config, MachineKind};
 use crate::control::Published;
 use crate::store::{NewCalibration, Store, StoreError};
 
@@ -173,21 +173,26 @@ fn changes(then: &Hardware, now: &Hardware, declared: Option<(&str, &str)>) -> V
 
 fn hardware(config: &Config) -> Hardware {
     let travel = config.machine.travel();
-    let board = &config.machine.roboclaw;
-    let is_real = !config.machine.kind.is_simulated();
+    let (roboclaw, odrive) = (&config.machine.roboclaw, &config.machine.odrive);
+    let board = match config.machine.kind {
+        MachineKind::Simulated => None,
+        MachineKind::RoboClaw => {
+            Some((&roboclaw.port, [roboclaw.x.counts_per_metre, roboclaw.y.counts_per_metre]))
+        }
+        MachineKind::Odrive => Some((&odrive.port, [odrive.x.turns_per_metre, odrive.y.turns_per_metre])),
+    };
     Hardware {
         machine: config.machine.kind.name().into(),
         travel_m: [[travel.min.x, travel.min.y], [travel.max.x, travel.max.y]],
-        controller: is_real.then(|| board.port.display().to_string()),
+        controller: board.map(|(port, _)| port.display().to_string()),
         firmware: None,
-        counts_per_metre: is_real.then_some([board.x.counts_per_metre, board.y.counts_per_metre]),
+        counts_per_metre: board.map(|(_, counts_per_metre)| counts_per_metre),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::MachineKind;
 
     fn with_room(config: &Config, made_on: Hardware) -> Calibrations {
         let map = RigidMap::from_yaw(1.0, [1.0, 2.0, 0.0].into());
@@ -220,6 +225,21 @@ mod tests {
         assert!(why.to_string().contains("motor controller was /dev/another"), "{why}");
         let why = same.outdated("headset 1", "unity", &now).unwrap();
         assert!(why.to_string().contains("client's convention was openxr and is unity"), "{why}");
+    }
+
+    #[test]
+    fn the_hardware_of_each_machine_is_its_own_controller_and_encoders() {
+        let mut config = real();
+        let roboclaw = hardware(&config);
+        config.machine.kind = MachineKind::Odrive;
+        let odrive = hardware(&config);
+        assert_eq!((odrive.machine.as_str(), odrive.controller.as_deref()), ("odrive", Some("/dev/odrive")));
+        assert_eq!(odrive.counts_per_metre, Some([45.454_545, 46.666_667]));
+        let parts: Vec<_> = roboclaw.changes(&odrive).into_iter().map(|change| change.part).collect();
+        assert!(
+            parts.contains(&HardwarePart::Machine) && parts.contains(&HardwarePart::Controller),
+            "{parts:?}"
+        );
     }
 
     #[test]

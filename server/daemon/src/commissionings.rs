@@ -30,7 +30,7 @@ impl Commissionings {
         let (machine, limits) = (&config.machine, config.machine.limits());
         Self {
             last: Mutex::new(last),
-            is_harmless: machine.kind.is_simulated() || machine.roboclaw.emulated,
+            is_harmless: machine.is_harmless(),
             braking_mps2: [limits.x.braking_mps2, limits.y.braking_mps2],
         }
     }
@@ -112,5 +112,10 @@ mod tests {
         let anything = hardware("/dev/roboclaw");
         assert_eq!(with(MachineKind::Simulated, false, None).why_not_armed(&anything), None);
         assert_eq!(with(MachineKind::RoboClaw, true, None).why_not_armed(&anything), None);
+        // Boards of another machine being emulated ones says nothing of this one's.
+        assert_eq!(
+            with(MachineKind::Odrive, true, None).why_not_armed(&anything),
+            Some(Reason::NotCommissioned)
+        );
     }
 }

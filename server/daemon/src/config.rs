@@ -7,6 +7,7 @@ mod inputs;
 mod intention;
 mod keys;
 mod load;
+mod odrive;
 mod origins;
 mod roboclaw;
 
@@ -24,6 +25,7 @@ pub use inputs::{Input, InputKind, Level};
 pub use intention::ParametersRefused;
 pub use keys::{Key, all as keys};
 pub use load::{ConfigError, load, load_text, reference};
+pub use odrive::Odrive;
 pub use origins::{Loaded, Origins};
 pub use roboclaw::RoboClaw;
 
@@ -116,6 +118,8 @@ pub struct Machine {
     pub y: AxisLimits,
     /// What a RoboClaw machine needs beside.
     pub roboclaw: RoboClaw,
+    /// What an ODrive machine needs beside.
+    pub odrive: Odrive,
 }
 
 /// What watches the arena beside the headsets.
@@ -146,6 +150,8 @@ pub enum MachineKind {
     Simulated,
     /// One or two RoboClaws.
     RoboClaw,
+    /// An ODrive.
+    Odrive,
 }
 
 /// What is known of people.
@@ -250,6 +256,7 @@ impl Default for Config {
                 x: AxisLimits::PAPER,
                 y: AxisLimits::PAPER,
                 roboclaw: RoboClaw::default(),
+                odrive: Odrive::default(),
             },
             safety: Safety::default(),
             people: People {
@@ -319,6 +326,15 @@ impl Machine {
         Limits { x: self.x, y: self.y }
     }
 
+    /// Whether nothing moves that could hurt anybody: it is simulated, or its controller is an emulated one.
+    pub const fn is_harmless(&self) -> bool {
+        match self.kind {
+            MachineKind::Simulated => true,
+            MachineKind::RoboClaw => self.roboclaw.emulated,
+            MachineKind::Odrive => self.odrive.emulated,
+        }
+    }
+
     /// Where the column's centre can stand.
     pub fn travel(&self) -> Travel {
         let [min_x, min_y, max_x, max_y] = self.travel_m;
@@ -328,7 +344,7 @@ impl Machine {
 
 impl MachineKind {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Simulated, Self::RoboClaw];
+    pub const ALL: [Self; 3] = [Self::Simulated, Self::RoboClaw, Self::Odrive];
 
     /// Whether nothing real moves.
     pub const fn is_simulated(self) -> bool {
@@ -340,6 +356,7 @@ impl MachineKind {
         match self {
             Self::Simulated => "simulated",
             Self::RoboClaw => "roboclaw",
+            Self::Odrive => "odrive",
         }
     }
 }

@@ -1,16 +1,18 @@
 //! `covr emulate`: motor controllers that are not there, on a pseudo-terminal.
 //!
-//! They are [`covr_gantry::roboclaw::emulator`]; here is their clock, their port and the orders on standard input.
+//! They are [`covr_gantry::roboclaw::emulator`] and [`covr_gantry::odrive::emulator`]; here is their clock, their port and the orders on standard input.
 
+mod odrive;
 mod options;
 mod port;
 mod session;
 
 use clap::{Args, Subcommand};
-use covr_gantry::roboclaw;
+use covr_gantry::{odrive as odrive_board, roboclaw};
 
 use session::Start;
 
+pub use odrive::Odrive;
 pub use options::Roboclaw;
 
 /// Emulate hardware, for trying a driver without any.
@@ -26,6 +28,8 @@ pub struct EmulateCommand {
 pub enum Emulated {
     /// RoboClaw boards in front of the simulated motors; prints `roboclaw emulator on PATH` and runs until SIGINT or SIGTERM.
     Roboclaw(Box<Roboclaw>),
+    /// An ODrive in front of the simulated motors; prints `odrive emulator on PATH` and runs until SIGINT or SIGTERM.
+    Odrive(Box<Odrive>),
 }
 
 /// Until it is told to end by a signal.
@@ -35,6 +39,12 @@ pub fn run(command: &EmulateCommand) -> anyhow::Result<()> {
             name: "roboclaw",
             emulator: roboclaw::emulator::Emulator::new(options.setup())?,
             orders: options.orders().collect(),
+            link: options.link.as_deref(),
+        }),
+        Emulated::Odrive(options) => session::run(Start {
+            name: "odrive",
+            emulator: odrive_board::emulator::Emulator::new(options.setup())?,
+            orders: options.order.clone(),
             link: options.link.as_deref(),
         }),
     }

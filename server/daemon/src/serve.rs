@@ -12,9 +12,9 @@ use covr_engine::safety::separation::KeptFrom;
 use covr_engine::time::Span;
 use covr_engine::{Engine, EngineConfig, Request};
 use covr_gantry::contract::Gantry;
-use covr_gantry::roboclaw;
 use covr_gantry::sim::SimulatedMachine;
 use covr_gantry::sim::parameters::MachineParameters;
+use covr_gantry::{odrive, roboclaw};
 use covr_wire::dashboard::MachineShape;
 use covr_wire::reason::last_run;
 use covr_wire::scene::parse_scene;
@@ -331,15 +331,23 @@ fn machine(config: &Config, clock: Clock) -> anyhow::Result<Box<dyn Gantry>> {
         }
         MachineKind::RoboClaw => {
             let settings = config.machine.roboclaw.settings(config);
-            // Below the control thread, above everything else.
-            let priority = config.control.real_time.then(|| config.control.priority.saturating_sub(1).max(1));
-            let on_thread = move || {
-                let came_of_it = real_time::ask(priority);
-                tracing::debug!(?came_of_it, "the link thread's scheduling");
-            };
-            let machine = roboclaw::start(settings, move || clock.now(), on_thread);
+            let machine = roboclaw::start(settings, move || clock.now(), on_link_thread(config));
             Ok(Box::new(machine.context("the RoboClaw machine")?))
         }
+        MachineKind::Odrive => {
+            let settings = config.machine.odrive.settings(config);
+            let machine = odrive::start(settings, move || clock.now(), on_link_thread(config));
+            Ok(Box::new(machine.context("the ODrive machine")?))
+        }
+    }
+}
+
+/// What the thread that owns a controller's port begins with: below the control thread, above everything else.
+fn on_link_thread(config: &Config) -> impl FnOnce() + Send + 'static {
+    let priority = config.control.real_time.then(|| config.control.priority.saturating_sub(1).max(1));
+    move || {
+        let came_of_it = real_time::ask(priority);
+        tracing::debug!(?came_of_it, "the link thread's scheduling");
     }
 }
 

@@ -65,6 +65,11 @@ impl Drop for Boards {
     }
 }
 
+/// A line out, a line of an answer in.
+fn line_exchange(port: &mut File, line: &str, count: usize) -> String {
+    String::from_utf8(exchange(port, line.as_bytes(), count, LONG)).unwrap()
+}
+
 fn command(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_covr"));
     command.args(["emulate", "roboclaw"]).args(args);
@@ -217,4 +222,27 @@ fn the_help_tells_every_order() {
     for order in ["brown-out MS", "after SECONDS ORDER", "unplug", "plug", "show", "stick LEVEL"] {
         assert!(said.contains(order), "{order}");
     }
+}
+
+#[test]
+fn an_odrive_answers_through_a_pseudo_terminal_and_obeys_orders() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_covr"))
+        .args(["emulate", "odrive", "--firmware", "0.5.5", "--seed", "7"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let said = BufReader::new(child.stdout.take().unwrap()).lines();
+    let mut boards = Boards { child, said, path: PathBuf::new() };
+    let line = boards.said.next().unwrap().unwrap();
+    boards.path = line.strip_prefix("odrive emulator on ").expect(&line).into();
+    let mut port = open(&boards.path);
+    assert_eq!(line_exchange(&mut port, "r fw_version_revision\n", 3), "5\r\n");
+    assert_eq!(line_exchange(&mut port, "r vbus_voltage *93\n", 14), "24.000000*40\r\n");
+    boards.order("error x encoder");
+    assert_eq!(line_exchange(&mut port, "r axis0.error\n", 5), "256\r\n");
+    assert_eq!(boards.show()["is_x_on"], false);
+    // A line that is no order changes nothing and ends nothing.
+    boards.tell("press");
+    boards.order("supply 22");
 }

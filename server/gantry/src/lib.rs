@@ -8,6 +8,7 @@
 //! - [`sim`]: a simulated gantry with motors, friction, encoders, a velocity controller, and faults to switch on.
 //! - [`emulation`]: what every emulated controller stands on.
 //! - [`linked`]: what every machine behind a line shares.
+//! - [`odrive`]: an ODrive on USB.
 //! - [`roboclaw`]: one or two RoboClaw controllers on a serial line.
 //! - [`identify`]: inertia, friction and delays of an axis from a recorded run.
 //! - [`ideal`]: a machine that does exactly what it is told, for sweeps over rules rather than machines.
@@ -19,6 +20,7 @@ pub mod homing;
 pub mod ideal;
 pub mod identify;
 pub mod linked;
+pub mod odrive;
 pub mod roboclaw;
 mod settle;
 pub mod sim;

@@ -112,16 +112,19 @@ export class CovrServer {
     return id;
   }
 
-  /** The configuration on the machine that is asked for: with COVR_MACHINE=roboclaw emulated boards on a pseudo-terminal, whatever is tested. */
+  /** The configuration on the machine that is asked for: with COVR_MACHINE=roboclaw or odrive an emulated controller on a pseudo-terminal, whatever is tested. */
   async #onMachine(config: string): Promise<string> {
-    if (process.env["COVR_MACHINE"] !== "roboclaw") return config;
+    const kind = process.env["COVR_MACHINE"];
+    if (kind !== "roboclaw" && kind !== "odrive") return config;
     const port = join(this.folder, "boards");
     const travel = /travel_m = \[([^\]]*)\]/.exec(config)?.[1] ?? "0, 0, 4, 4";
-    this.#boards = this.#spawn(["emulate", "roboclaw", "--tuned", "--baud", "460800", "--start", "0.3,0.3", "--end-switches", "none", "--travel", travel.replaceAll(" ", ""), "--link", port]);
-    await until("the boards are there", 20_000, () => (this.#log.includes("roboclaw emulator on") ? true : null));
-    const kind = 'kind = "roboclaw"\n';
-    const machine = config.includes("[machine]\n") ? config.replace("[machine]\n", `[machine]\n${kind}`) : `${config}\n[machine]\n${kind}`;
-    return `${machine}\n[machine.roboclaw]\nemulated = true\nport = "${port}"\ncurrent_limit_amps = 7.0\nhome_by = "stops"\nswitch_outside_m = 0.03\n`;
+    const boards = kind === "roboclaw" ? ["--tuned", "--baud", "460800", "--end-switches", "none"] : [];
+    this.#boards = this.#spawn(["emulate", kind, ...boards, "--start", "0.3,0.3", "--travel", travel.replaceAll(" ", ""), "--link", port]);
+    await until("the boards are there", 20_000, () => (this.#log.includes(`${kind} emulator on`) ? true : null));
+    const line = `kind = "${kind}"\n`;
+    const machine = config.includes("[machine]\n") ? config.replace("[machine]\n", `[machine]\n${line}`) : `${config}\n[machine]\n${line}`;
+    const stops = kind === "roboclaw" ? 'home_by = "stops"\nswitch_outside_m = 0.03\n' : "";
+    return `${machine}\n[machine.${kind}]\nemulated = true\nport = "${port}"\ncurrent_limit_amps = 7.0\n${stops}`;
   }
 
   async #end(): Promise<void> {

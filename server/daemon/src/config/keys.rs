@@ -2,6 +2,7 @@
 //! example file and the errors all come from this one table.
 
 mod links;
+mod odrive;
 mod place;
 mod roboclaw;
 
@@ -157,6 +158,7 @@ pub fn all() -> Vec<Key> {
         ),
     ];
     keys.extend(roboclaw::keys());
+    keys.extend(odrive::keys());
     keys.extend([
         Key::new(
             "safety.game_master",

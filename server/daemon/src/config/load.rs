@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use toml::Value;
 
 use super::keys::{Key, all, out_of_order};
+use covr_gantry::odrive::settings::ShortWatchdog;
 use covr_wire::records::ConfigOrigin;
 
-use super::{Config, Loaded, LogFormat};
+use super::{Config, Loaded, LogFormat, MachineKind};
 
 /// Why a configuration was refused.
 #[derive(Debug, thiserror::Error)]
@@ -63,6 +64,14 @@ pub enum ConfigError {
         /// Its value.
         bad: f64,
     },
+    /// The column could coast.
+    #[error("{key}: {source}")]
+    ShortWatchdog {
+        /// The key.
+        key: &'static str,
+        /// By how much it is too short.
+        source: ShortWatchdog,
+    },
 }
 
 /// The configuration of a file (or the defaults without one), with the environment's overrides.
@@ -111,6 +120,13 @@ fn read_text(text: &str, origin: &str) -> Result<Loaded, ConfigError> {
 
 /// What no key can tell by itself.
 fn checked(loaded: Loaded) -> Result<Loaded, ConfigError> {
+    let machine = &loaded.config.machine;
+    if machine.kind == MachineKind::Odrive {
+        machine.odrive.settings(&loaded.config).check().map_err(|source| ConfigError::ShortWatchdog {
+            key: "machine.odrive.watchdog_timeout_secs",
+            source,
+        })?;
+    }
     match out_of_order(&loaded.config) {
         Some([(weak_key, weak), (bad_key, bad)]) => {
             Err(ConfigError::WeakNotBelowBad { weak_key, weak, bad_key, bad })
@@ -233,6 +249,22 @@ mod tests {
         for bad in ["*", "http://*", "http://lab.example/", "lab.example", "http://", ""] {
             assert!(load(bad).unwrap_err().to_string().contains("allowed_origins"), "{bad}");
         }
+    }
+
+    #[test]
+    fn a_watchdog_with_which_the_column_could_coast_is_refused_for_the_machine_that_has_it() {
+        let text = |kind: &str, braking: f64| {
+            format!("[machine]\nkind = \"{kind}\"\n[machine.x]\nbraking_mps2 = {braking}\n")
+        };
+        assert!(load_text(&text("odrive", 2.5), "f.toml").is_ok());
+        assert!(load_text(&text("roboclaw", 1.25), "f.toml").is_ok());
+        let refused = load_text(&text("odrive", 1.25), "f.toml").unwrap_err().to_string();
+        assert!(
+            refused.starts_with(
+                "machine.odrive.watchdog_timeout_secs: watchdog timeout: found 0.80 s, expected at least 1.08 s"
+            ),
+            "{refused}"
+        );
     }
 
     #[test]

@@ -203,6 +203,17 @@ pub fn drive<E: Emulated, S: Session>(bench: &mut Bench<E, S>) -> Off {
     }
 }
 
+/// Speed up along x until this speed is told.
+pub fn speed_up<E: Emulated, S: Session>(bench: &mut Bench<E, S>, to_mps: f64) {
+    let mut v = 0.0;
+    while v < to_mps {
+        v += 1.25 * CONTROL_PERIOD.secs();
+        let at = bench.session.report().position;
+        let ahead = at + Planar::new(v * CONTROL_PERIOD.secs(), 0.0);
+        bench.cycle(setpoint(ahead, Planar::new(v, 0.0), Planar::new(1.25, 0.0))).unwrap();
+    }
+}
+
 pub fn velocity_covers(mps: f64, secs: f64, braking_mps2: f64) -> f64 {
     mps * secs + mps * mps / (2.0 * braking_mps2)
 }

@@ -109,7 +109,9 @@ enum Ended<R: std::error::Error> {
     NotBegun(#[from] NotBegun<R>),
     #[error("no good answer for {} ms; the last: {last}", .after.as_millis())]
     Silent { after: Duration, last: R },
-    #[error("the controller has restarted, or its count jumped: it is configured anew")]
+    #[error(
+        "the controller has restarted, its count jumped, or it had let a motor go: it is configured anew"
+    )]
     Restarted,
 }
 

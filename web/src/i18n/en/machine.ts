@@ -53,7 +53,7 @@ export const machine = {
   },
   board: {
     title: "Motor controller",
-    none: "The simulated machine has no boards and no link. With machine.kind “roboclaw” they are shown here.",
+    none: "The simulated machine has no boards and no link. With machine.kind “roboclaw” or “odrive” they are shown here.",
     state: "State",
     fine: "It can be driven.",
     firmware: "Firmware",

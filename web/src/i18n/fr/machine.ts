@@ -53,7 +53,7 @@ export const machine = {
   },
   board: {
     title: "Contrôleur de moteurs",
-    none: "La machine simulée n’a ni cartes ni liaison. Avec machine.kind « roboclaw » elles sont montrées ici.",
+    none: "La machine simulée n’a ni cartes ni liaison. Avec machine.kind « roboclaw » ou « odrive » elles sont montrées ici.",
     state: "État",
     fine: "Il peut être piloté.",
     firmware: "Micrologiciel",
