@@ -87,6 +87,7 @@ pub fn supervisor(data: &[u8]) {
             current_amps: [0.5; 2],
             drive: Drive::Released,
             homing: Homing::NotHomed,
+            home_repeatability_m: None,
             trouble: None,
         },
         answers: true,

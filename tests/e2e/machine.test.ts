@@ -40,6 +40,8 @@ describe("moved by hand", () => {
 
   it("moves while the pointer is down and rests when it is up, and the record says so", async () => {
     await home();
+    expect(await dashboard.says("home-repeatability")).toMatch(/found x [-−]?\d\.\d\d mm and y [-−]?\d\.\d\d mm/);
+    expect(dashboard.events.map(({ kind }) => kind)).toContain("homed");
     const [before] = dashboard.now.column.position_m;
     await holdDown("jog-right");
     await moves();

@@ -60,6 +60,10 @@ fn homes(bench: &mut dyn Bench) {
         report.homing == Homing::Homed && report.velocity.norm() < AT_REST_MPS
     });
     assert_eq!(report.drive, Drive::On);
+    // What a machine says of how well its home repeats is small; one that homes by nothing says nothing.
+    for off_m in report.home_repeatability_m.into_iter().flatten() {
+        assert!(off_m.abs() < 0.005, "the two approaches found the home {off_m} m apart");
+    }
     let depth = bench.gantry().travel().depth_m(report.position);
     assert!(depth > -0.002, "{:?} is {depth} m inside the travel", report.position);
 }

@@ -215,6 +215,7 @@ export class MockMachine {
         planned_path_m: target === null ? [] : this.#pathTo(target),
         jog_speed_mps: this.#mode === "ready" ? 0.24 : null,
         current_amps: [0.8 + speed, 0.6 + speed],
+        home_repeatability_m: [0.0003, -0.0001],
         homed: this.#mode !== "faulted",
       },
       persons: [

@@ -121,7 +121,13 @@ async fn home(desk: &mut Desk) -> anyhow::Result<()> {
         bail!("it stopped: {}", stop.reason);
     }
     let [x, y] = homed.column.position_m;
-    say(&format!("   Homed; the column stands at ({x:.3}, {y:.3}) m."))
+    say(&format!("   Homed; the column stands at ({x:.3}, {y:.3}) m."))?;
+    let Some([x, y]) = homed.column.home_repeatability_m else { return Ok(()) };
+    say(&format!(
+        "   The second, slow approach found the home {:+.2} mm along x and {:+.2} mm along y from the first.",
+        x * 1e3,
+        y * 1e3
+    ))
 }
 
 async fn directions(desk: &mut Desk) -> anyhow::Result<()> {

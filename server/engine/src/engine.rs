@@ -19,7 +19,7 @@ use std::sync::Arc;
 use crate::event::{Event, EventKind};
 use crate::intention::{IntentionParameters, RuleName};
 use crate::interaction::Ask;
-use crate::machine::{Drive, Limits, MachineReport, Travel};
+use crate::machine::{Drive, Homing, Limits, MachineReport, Travel};
 use crate::mode::Mode;
 use crate::motion::MotionName;
 use crate::motion::standing::StandingName;
@@ -197,6 +197,11 @@ impl Engine {
                 if let Some(came_to) = self.braking.as_mut().and_then(|b| b.watch(&report, rests)) {
                     self.braking = None;
                     self.pending.push(came_to);
+                }
+                let homes = self.report.is_some_and(|before| before.homing == Homing::Running);
+                if homes && report.homing == Homing::Homed {
+                    let repeatability_m = report.home_repeatability_m;
+                    self.pending.push(EventKind::Homed { at: report.position, repeatability_m });
                 }
                 self.report = Some(report);
             }

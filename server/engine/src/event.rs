@@ -55,6 +55,13 @@ pub enum EventKind {
         /// Index of the object in the scene.
         object: usize,
     },
+    /// The machine has found its home.
+    Homed {
+        /// Where the column rests.
+        at: Floor,
+        /// See [`MachineReport::home_repeatability_m`](crate::machine::MachineReport::home_repeatability_m).
+        repeatability_m: Option<[f64; 2]>,
+    },
     /// A column that was stopped in motion rests, as measured.
     CameToRest {
         /// When the stop began, m/s.

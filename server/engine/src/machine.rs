@@ -71,6 +71,9 @@ pub struct MachineReport {
     pub drive: Drive,
     /// How far homing is.
     pub homing: Homing,
+    /// Where the second, slow approach of the last homing found each switch or stop, less where its first, faster one did, m; none before it, and for a
+    /// machine that does not tell.
+    pub home_repeatability_m: Option<[f64; 2]>,
     /// Why it cannot be driven now, though it may answer (R8).
     pub trouble: Option<Trouble>,
 }

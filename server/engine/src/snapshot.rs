@@ -122,6 +122,9 @@ pub struct ColumnState {
     pub jog_speed_mps: Option<f64>,
     /// Motor currents x, y, A.
     pub current_amps: [f64; 2],
+    /// Where the second, slow approach of the last homing found each switch or stop, less where its first, faster one did, m; none before it, and for a
+    /// machine that does not tell.
+    pub home_repeatability_m: Option<[f64; 2]>,
     /// Positions are in the room frame.
     pub homed: bool,
 }

@@ -7,6 +7,8 @@
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct HomingAxis {
     phase: Phase,
+    /// Where it tripped on the first approach, and on the measuring one, m since power-on.
+    first_m: Option<f64>,
     switch_m: Option<f64>,
     watched_m: f64,
     watched_secs: f64,
@@ -108,7 +110,10 @@ impl HomingAxis {
             Phase::Start => self.enter(if on_switch { Phase::Clearing } else { Phase::Seeking }, here_m),
             Phase::Clearing if on_switch => self.phase_start_m = here_m,
             Phase::Clearing if here_m - self.phase_start_m > CLEAR_M => self.enter(Phase::Seeking, here_m),
-            Phase::Seeking if on_switch => self.enter(Phase::Braking, here_m),
+            Phase::Seeking if on_switch => {
+                self.first_m = Some(here_m);
+                self.enter(Phase::Braking, here_m);
+            }
             Phase::Seeking if self.phase_start_m - here_m > plan.longest_seek_m => return HomingStep::Failed,
             Phase::Braking if at_rest => self.enter(Phase::BackingOff, here_m),
             Phase::BackingOff if on_switch => self.phase_start_m = here_m,
@@ -136,6 +141,16 @@ impl HomingAxis {
     /// Where the switch tripped on the measuring approach, m since power-on.
     pub(crate) const fn switch_m(&self) -> Option<f64> {
         self.switch_m
+    }
+
+    /// Where the measuring approach found the switch, less where the first one did, m.
+    pub(crate) fn repeatability_m(&self) -> Option<f64> {
+        Some(self.switch_m? - self.first_m?)
+    }
+
+    /// Of both axes, m.
+    pub(crate) fn both_repeatabilities_m(sequences: &[Self; 2]) -> Option<[f64; 2]> {
+        Some([sequences[0].repeatability_m()?, sequences[1].repeatability_m()?])
     }
 
     fn enter(&mut self, phase: Phase, here_m: f64) {
@@ -183,3 +198,47 @@ const PROGRESS_M: f64 = 0.002;
 const STUCK_SECS: f64 = 0.6;
 /// Beyond the whole travel and its stops, m.
 const SPARE_M: f64 = 0.1;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Home an axis that moves as told, with a switch that trips at the first of these places on the first approach and at the second
+    /// afterwards, m.
+    fn homed(switch_m: [f64; 2]) -> HomingAxis {
+        let parameters = HomingParameters {
+            creep_mps: 0.1,
+            approach_mps: 0.02,
+            switch_outside_m: 0.01,
+            rest_inside_m: 0.05,
+        };
+        let plan = HomingPlan::new(parameters, 4.0);
+        let (mut axis, mut here_m, mut speed_mps) = (HomingAxis::default(), 0.0, 0.0);
+        let mut trips_at_m = switch_m[0];
+        for _ in 0..1_000_000 {
+            let on_switch = here_m <= trips_at_m;
+            let seen = Seen { here_m, at_rest: speed_mps == 0.0, on_switch, since_last_secs: 1e-4 };
+            speed_mps = match axis.step(&plan, seen) {
+                HomingStep::Move(mps) => mps,
+                HomingStep::Brake | HomingStep::Rest { .. } => 0.0,
+                HomingStep::Done => return axis,
+                HomingStep::Failed => panic!("it failed at {here_m} m"),
+            };
+            if speed_mps > 0.0 {
+                trips_at_m = switch_m[1];
+            }
+            here_m += speed_mps * 1e-4;
+        }
+        panic!("it never ends");
+    }
+
+    #[test]
+    fn it_repeats_as_well_as_its_switch_does() {
+        // A step of the fast approach is 10 micrometres, one of the slow approach 2.
+        for off_m in [0.0, 0.0007, -0.0012] {
+            let found_m = homed([-0.2, -0.2 + off_m]).repeatability_m().unwrap();
+            assert!((found_m - off_m).abs() < 15e-6, "{found_m} for {off_m}");
+        }
+        assert_eq!(HomingAxis::default().repeatability_m(), None);
+    }
+}

@@ -118,6 +118,7 @@ impl Gantry for IdealMachine {
             current_amps: [0.0; 2],
             drive: self.drive,
             homing: self.homing,
+            home_repeatability_m: None,
             trouble: None,
         };
         Reading { report, link: Ok(()) }

@@ -65,6 +65,7 @@ impl SimulatedMachine {
             current_amps: [0.0; 2],
             drive: controller.drive(),
             homing: controller.homing(),
+            home_repeatability_m: controller.home_repeatability_m(),
             trouble: None,
         };
         Ok(Self {
@@ -173,6 +174,7 @@ impl SimulatedMachine {
             current_amps: [amps(0), amps(1)],
             drive: self.controller.drive(),
             homing,
+            home_repeatability_m: self.controller.home_repeatability_m(),
             trouble: None,
         }
     }

@@ -148,6 +148,7 @@ pub(crate) fn snapshot() -> Snapshot {
             least_arrival_secs: Some(1.6),
             jog_speed_mps: None,
             current_amps: [0.5, 0.4],
+            home_repeatability_m: Some([0.0003, -0.0001]),
             homed: true,
         },
         persons: vec![person(3, Some(looking)), person(8, None)],

@@ -5,7 +5,7 @@ import type { WireEvent } from "../api/types";
 export const GROUPS = {
   stops: ["stop_pressed", "came_to_rest"],
   rules: ["rule_breached", "rule_cleared"],
-  mode: ["mode_changed", "request_accepted", "request_refused", "jog_began", "jog_ended"],
+  mode: ["mode_changed", "request_accepted", "request_refused", "homed", "jog_began", "jog_ended"],
   people: ["person_entered", "person_left", "served", "origin_changed", "touch_began", "touch_ended", "interaction_began", "interaction_ended", "contact_over"],
   priors: ["prior_changed"],
   scenes: ["scene_activated", "scene_stored", "scene_event"],

@@ -81,6 +81,11 @@ function textOf(event: WireEvent, label: (object: string) => string): EventWords
       return of(text.machine_commissioned, ["author"]);
     case "commissioning_refused":
       return of(text.commissioning_refused, ["author"], why("detail"));
+    case "homed": {
+      const found = detail["repeatability_m"];
+      const off = Array.isArray(found) ? found.map((axis) => decimal(Number(axis) * 1000, 2)) : null;
+      return { text: off === null ? text.homed : text.homed_within(off[0] ?? "", off[1] ?? ""), server: null };
+    }
     case "came_to_rest": {
       const way = detail["distance_m"];
       const secs = number("secs");

@@ -89,6 +89,13 @@ function Axes(props: { readonly column: Column; readonly shape: MachineShape | n
         <For each={[0, 1] as const}>{(axis) => <Fact name={`${say().limits}: ${name(axis)}`} value={limits(axis)} />}</For>
       </dl>
       <p class="empty">{props.column.homed ? say().homed : say().notHomed}</p>
+      <Show when={props.column.home_repeatability_m}>
+        {(found) => (
+          <p class="empty" data-testid="home-repeatability">
+            {say().repeatability(decimal(found()[0] * 1000, 2), decimal(found()[1] * 1000, 2))}
+          </p>
+        )}
+      </Show>
     </section>
   );
 }

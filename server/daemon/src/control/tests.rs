@@ -55,6 +55,7 @@ impl Gantry for Puppet {
             current_amps: [0.0; 2],
             drive: Drive::On,
             homing: Homing::Homed,
+            home_repeatability_m: None,
             trouble: None,
         };
         Reading { report, link: Ok(()) }

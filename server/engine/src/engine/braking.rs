@@ -98,6 +98,7 @@ mod tests {
                 current_amps: [1.0; 2],
                 drive: Drive::On,
                 homing: Homing::Homed,
+                home_repeatability_m: None,
                 trouble: None,
             };
             let begun = Braking::begin(Time::ZERO, &report(Time::ZERO, 2.0, v), &Limits::PAPER, Span::from_millis(50));
@@ -134,6 +135,7 @@ mod tests {
             current_amps: [0.0; 2],
             drive: Drive::On,
             homing: Homing::Homed,
+            home_repeatability_m: None,
             trouble: None,
         };
         assert!(Braking::begin(Time::ZERO, &report, &Limits::PAPER, Span::from_millis(50)).is_none());

@@ -83,6 +83,7 @@ impl Room {
                 current_amps: [0.5; 2],
                 drive: Drive::Released,
                 homing: Homing::NotHomed,
+                home_repeatability_m: None,
                 trouble: None,
             },
             head: None,

@@ -85,6 +85,7 @@ impl Engine {
             least_arrival_secs,
             jog_speed_mps: self.jog_speed_mps(),
             current_amps: self.report.map_or([0.0; 2], |r| r.current_amps),
+            home_repeatability_m: self.report.and_then(|r| r.home_repeatability_m),
             homed: self.report.is_some_and(|r| r.homing == Homing::Homed),
         }
     }

@@ -93,6 +93,7 @@ pub struct Axes {
     axes: [Axis; 2],
     homing: Homing,
     switches_m: Option<[f64; 2]>,
+    home_repeatability_m: Option<[f64; 2]>,
     was_told_to_home: bool,
     kept_m: Option<[f64; 2]>,
     /// The count went on as no machine can move, or the controller has restarted.
@@ -134,6 +135,7 @@ impl Axes {
             axes: [axis(span.x), axis(span.y)],
             homing: Homing::NotHomed,
             switches_m: None,
+            home_repeatability_m: None,
             was_told_to_home: false,
             kept_m: None,
             is_lost: false,
@@ -233,6 +235,7 @@ impl Axes {
             current_amps: [0, 1].map(|i| self.amps(i)),
             drive: if trouble.is_some() { DriveState::Released } else { self.drive },
             homing: self.homing,
+            home_repeatability_m: self.home_repeatability_m,
             trouble,
         }
     }
@@ -271,6 +274,7 @@ impl Axes {
         self.stood_at = stood_at;
         self.homing = Homing::NotHomed;
         self.switches_m = None;
+        self.home_repeatability_m = None;
         self.kept_m = None;
         self.was_told_to_home = false;
         self.axes.iter_mut().for_each(|axis| axis.here_m = 0.0);
@@ -337,6 +341,8 @@ impl Axes {
         {
             self.homing = Homing::Homed;
             self.switches_m = Some([x, y]);
+            let sequences = [self.axes[0].sequence, self.axes[1].sequence];
+            self.home_repeatability_m = HomingAxis::both_repeatabilities_m(&sequences);
         }
         speeds
     }

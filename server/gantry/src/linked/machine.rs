@@ -57,6 +57,7 @@ impl Linked {
             current_amps: [0.0; 2],
             drive: Drive::Released,
             homing: Homing::NotHomed,
+            home_repeatability_m: None,
             trouble: Some(Trouble::NoAnswer),
         };
         let state = State { report, answers: false, taken: Time::ZERO, health: Arc::default() };

@@ -16,6 +16,7 @@ pub(super) struct Controller {
     homing: Homing,
     sequences: [HomingAxis; 2],
     switches_m: Option<[f64; 2]>,
+    home_repeatability_m: Option<[f64; 2]>,
     plans: [HomingPlan; 2],
     timeout_ticks: u32,
     silent_ticks: u32,
@@ -48,6 +49,7 @@ impl Controller {
             homing: Homing::NotHomed,
             sequences: [HomingAxis::default(); 2],
             switches_m: None,
+            home_repeatability_m: None,
             plans: [span.x, span.y]
                 .map(|span_m| HomingPlan::new(machine.homing, span_m + 2.0 * machine.stop_outside_m)),
             timeout_ticks: (machine.serial_timeout.micros() / TICK_MICROS) as u32,
@@ -118,6 +120,11 @@ impl Controller {
         self.switches_m
     }
 
+    /// Of the last home found, m.
+    pub(super) const fn home_repeatability_m(&self) -> Option<[f64; 2]> {
+        self.home_repeatability_m
+    }
+
     fn release(&mut self) {
         self.drive = Drive::Released;
         self.axes.iter_mut().for_each(AxisController::release);
@@ -158,6 +165,7 @@ impl Controller {
         {
             self.homing = Homing::Homed;
             self.switches_m = Some([x, y]);
+            self.home_repeatability_m = HomingAxis::both_repeatabilities_m(&self.sequences);
         }
     }
 }

@@ -88,6 +88,7 @@ mod tests {
             current_amps: [0.0; 2],
             drive: Drive::On,
             homing: Homing::Homed,
+            home_repeatability_m: None,
             trouble: None,
         }
     }

@@ -41,6 +41,9 @@ proptest! {
         // One count of 21 micrometres, and 20 more that the slow approach covers in a millisecond.
         prop_assert!(report.position.distance_m(truth) < 1e-4, "{:?} {:?}", report.position, truth);
         prop_assert!(truth.distance_m(Floor::new(0.05, 0.05)) < 0.001, "{:?}", truth);
+        // What the fast approach covers in a millisecond, and two counts.
+        let [x, y] = report.home_repeatability_m.unwrap();
+        prop_assert!(x.abs() < 2e-4 && y.abs() < 2e-4, "{} {}", x, y);
         prop_assert!(ARENA.depth_m(report.position) > 0.02, "outside the margin of R1");
     }
 }

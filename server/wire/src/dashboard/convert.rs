@@ -277,6 +277,7 @@ fn column(state: &engine::Snapshot, names: &BTreeMap<PersonId, String>) -> Colum
         planned_path_m: Vec::new(),
         jog_speed_mps: column.jog_speed_mps,
         current_amps: column.current_amps,
+        home_repeatability_m: column.home_repeatability_m,
         homed: column.homed,
     }
 }

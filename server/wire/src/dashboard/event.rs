@@ -62,6 +62,20 @@ impl Event {
                     json!({"person": person.0, "name": who(person), "object": id}),
                 )
             }
+            EventKind::Homed { at, repeatability_m } => {
+                let found = repeatability_m.map_or_else(String::new, |[x, y]| {
+                    format!(
+                        "; the second approach found x {:+.2} mm and y {:+.2} mm from the first",
+                        x * 1e3,
+                        y * 1e3
+                    )
+                });
+                (
+                    "homed",
+                    format!("homed, at ({:.3}, {:.3}) m{found}", at.x, at.y),
+                    json!({"at_m": [at.x, at.y], "repeatability_m": repeatability_m}),
+                )
+            }
             EventKind::CameToRest { velocity, secs, distance, allowed, braking_mps2 } => (
                 "came_to_rest",
                 format!(

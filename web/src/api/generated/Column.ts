@@ -70,6 +70,11 @@ jog_speed_mps: number | null,
  */
 current_amps: [number, number], 
 /**
+ * Where the second, slow approach of the last homing found each switch or stop, less where its first, faster one did, m; null before it,
+ * and for a machine that does not tell.
+ */
+home_repeatability_m: [number, number] | null, 
+/**
  * Positions are in the room frame.
  */
 homed: boolean, };

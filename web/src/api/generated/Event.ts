@@ -14,7 +14,7 @@ at_micros: number,
 at: string, 
 /**
  * Kind: `mode_changed`, `rule_breached`, `rule_cleared`, `request_accepted`, `request_refused`, `stop_pressed`,
- * `came_to_rest`, `jog_began`, `jog_ended`, `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
+ * `homed`, `came_to_rest`, `jog_began`, `jog_ended`, `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
  * `scene_activated`, `state_entered`, `scenario_cut`, `prior_changed`, `client_connected`, `client_gone`, `client_error`, `calibration_accepted`,
  * `calibration_refused`, `calibration_chosen`, `machine_commissioned`, `commissioning_refused`.
  */

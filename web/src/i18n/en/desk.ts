@@ -141,6 +141,8 @@ export const desk = {
     touch_ended: (person: string, object: string) => `${person} let go of ${object}`,
     machine_commissioned: (author: string) => `${author} commissioned the machine`,
     commissioning_refused: (author: string) => `${author}: commissioning refused`,
+    homed: "homed",
+    homed_within: (x: string, y: string) => `homed; the second approach found x ${x} mm and y ${y} mm from the first`,
     came_to_rest: (way: string, secs: string) => `the column came to rest, ${way} m and ${secs} s after the stop`,
     jog_began: "the column is moved by hand",
     jog_ended: "the column is moved by hand no more",

@@ -16,6 +16,7 @@ export const machine = {
     limitsAre: (speed: string, acceleration: string, braking: string) => `${speed} m/s, ${acceleration} m/s² up, ${braking} m/s² down`,
     homed: "Homed: positions are in the room frame.",
     notHomed: "Not homed: the position is where the column was last known to stand.",
+    repeatability: (x: string, y: string) => `Homing: the second, slow approach found x ${x} mm and y ${y} mm from where the first did.`,
   },
   jog: {
     title: "Move by hand",

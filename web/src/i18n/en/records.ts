@@ -211,6 +211,7 @@ export const records = {
       request_refused: "refused",
       machine_commissioned: "commissioned",
       commissioning_refused: "commissioning refused",
+      homed: "homed",
       came_to_rest: "the column came to rest",
       jog_began: "moved by hand",
       jog_ended: "moved by hand no more",

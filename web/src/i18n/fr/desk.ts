@@ -141,6 +141,8 @@ export const desk = {
     touch_ended: (person: string, object: string) => `${person} a lâché ${object}`,
     machine_commissioned: (author: string) => `${author} a mis la machine en service`,
     commissioning_refused: (author: string) => `${author} : mise en service refusée`,
+    homed: "origine prise",
+    homed_within: (x: string, y: string) => `origine prise ; la seconde approche a trouvé x à ${x} mm et y à ${y} mm de la première`,
     came_to_rest: (way: string, secs: string) => `la colonne est au repos, ${way} m et ${secs} s après l’arrêt`,
     jog_began: "la colonne est déplacée à la main",
     jog_ended: "la colonne n’est plus déplacée à la main",

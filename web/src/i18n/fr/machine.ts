@@ -16,6 +16,7 @@ export const machine = {
     limitsAre: (speed: string, acceleration: string, braking: string) => `${speed} m/s, ${acceleration} m/s² pour accélérer, ${braking} m/s² pour freiner`,
     homed: "Origine prise : les positions sont dans le repère de la salle.",
     notHomed: "Origine non prise : la position est la dernière connue de la colonne.",
+    repeatability: (x: string, y: string) => `Prise d’origine : la seconde approche, lente, a trouvé x à ${x} mm et y à ${y} mm de la première.`,
   },
   jog: {
     title: "Déplacer à la main",

@@ -211,6 +211,7 @@ export const records = {
       request_refused: "refus",
       machine_commissioned: "mise en service",
       commissioning_refused: "mise en service refusée",
+      homed: "origine prise",
       came_to_rest: "la colonne est au repos",
       jog_began: "déplacée à la main",
       jog_ended: "n’est plus déplacée à la main",

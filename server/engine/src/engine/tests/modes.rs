@@ -157,3 +157,24 @@ fn every_cause_of_a_protective_stop_leads_to_one() {
         assert_eq!(room.engine.snapshot(room.now).stop.unwrap().rule, RuleId(rule), "{cause}");
     }
 }
+
+#[test]
+fn a_home_that_was_found_is_an_event_with_how_well_it_repeats() {
+    let mut room = Room::new(None);
+    room.report.homing = Homing::Running;
+    room.step();
+    drop(room.engine.drain_events());
+    room.report.homing = Homing::Homed;
+    room.report.home_repeatability_m = Some([0.0004, -0.0002]);
+    room.run(0.1);
+    let homed: Vec<_> = room
+        .engine
+        .drain_events()
+        .filter_map(|event| match event.kind {
+            EventKind::Homed { repeatability_m, .. } => Some(repeatability_m),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(homed, [Some([0.0004, -0.0002])]);
+    assert_eq!(room.engine.snapshot(room.now).column.home_repeatability_m, Some([0.0004, -0.0002]));
+}

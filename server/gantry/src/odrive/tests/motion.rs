@@ -11,6 +11,9 @@ fn it_finds_the_room_from_anywhere() {
         assert_eq!(bench.home(), Homing::Homed);
         let off_m = bench.session.report().position.distance_m(bench.truth().0);
         assert!(off_m < 0.003, "{off_m} m off");
+        let repeats_m = bench.session.report().home_repeatability_m.unwrap();
+        println!("repeats within {repeats_m:?} m");
+        assert!(repeats_m.iter().all(|off_m| off_m.abs() < 0.004), "{repeats_m:?}");
     }
 }
 

@@ -17,6 +17,9 @@ fn it_finds_the_room_on_every_kind_of_boards() {
         let mut bench = Bench::new(kind, Floor::new(0.6, 0.35));
         assert_eq!(bench.home(), Homing::Homed, "{} {:?}", kind.firmware, kind.boards);
         let off_m = bench.session.report().position.distance_m(bench.truth().0);
+        let repeats_m = bench.session.report().home_repeatability_m.unwrap();
+        println!("{} {:?} {:?}: repeats within {repeats_m:?} m", kind.firmware, kind.boards, kind.home_by);
+        assert!(repeats_m.iter().all(|off_m| off_m.abs() < 0.004), "{repeats_m:?}");
         assert!(off_m < 0.003, "{} {:?} {:?}: {off_m} m off", kind.firmware, kind.boards, kind.home_by);
     }
 }
