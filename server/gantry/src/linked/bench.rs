@@ -180,11 +180,19 @@ fn raw_course(t: f64) -> (f64, f64, f64) {
 
 /// Drive that way along both axes, and stay there.
 pub fn drive<E: Emulated, S: Session>(bench: &mut Bench<E, S>) -> Off {
+    drive_stuttering(bench, Span::ZERO)
+}
+
+/// The same with a host that every tenth cycle is late by so much.
+pub fn drive_stuttering<E: Emulated, S: Session>(bench: &mut Bench<E, S>, late: Span) -> Off {
     let from = bench.session.report().position;
     let begun = bench.port.time();
     let both = Planar::new(1.0, 1.0);
     let mut off = Off::default();
-    loop {
+    for cycle in 0_u32.. {
+        if cycle.is_multiple_of(10) {
+            bench.port.wait(late);
+        }
         let t = (bench.port.time() - begun).secs();
         let (s, v, a) = course(t);
         bench.cycle(setpoint(from + both * s, both * v, both * a)).unwrap();
@@ -198,9 +206,10 @@ pub fn drive<E: Emulated, S: Session>(bench: &mut Bench<E, S>) -> Off {
         off.greatest_m = off.greatest_m.max((true_place - (from + both * (s + v * since))).norm());
         if t > 4.5 {
             off.last_m = (true_place - (from + both * s)).norm();
-            return off;
+            break;
         }
     }
+    off
 }
 
 /// Speed up along x until this speed is told.

@@ -8,7 +8,7 @@ use super::firmware::{
     CLOSED_LOOP, Firmware, IDLE, POSITION_CONTROL, SUPPLY_ERRORS, TRAPEZOIDAL_TRAJECTORY, Version,
     axis_errors,
 };
-use super::goal::{AxisState, Goal};
+use super::goal::{AxisState, Goal, Pace};
 use super::line::{Batch, Line, Lost};
 use super::settings::Settings;
 use crate::linked::figures::Tally;
@@ -87,8 +87,8 @@ pub struct Configured<P> {
     watchdog_secs: f64,
     /// Above this a bridge switches off, degrees Celsius.
     hot_c: [f64; 2],
-    /// The trajectories' greatest speeds as last told, m/s.
-    told_mps: [Option<f64>; 2],
+    /// The trajectories' paces as last told.
+    told: [Option<Pace>; 2],
 }
 
 /// What the board is to do until the next exchange.
@@ -208,7 +208,7 @@ impl<P: Port> Identified<P> {
         }
         self.clear_errors()?;
         let Self { line, firmware, text } = self;
-        Ok(Configured { line, firmware, text, turns_per_metre, watchdog_secs, hot_c, told_mps: [None; 2] })
+        Ok(Configured { line, firmware, text, turns_per_metre, watchdog_secs, hot_c, told: [None; 2] })
     }
 
     fn clear_errors(&mut self) -> Result<(), Refused> {
@@ -277,7 +277,7 @@ impl<P: Port> Configured<P> {
         let outcome = self.line.exchange(&batch);
         if outcome.is_err() {
             // Who knows what of it arrived.
-            self.told_mps = [None; 2];
+            self.told = [None; 2];
         }
         self.understood(&outcome?, tell, goals)
     }
@@ -337,10 +337,8 @@ impl<P: Port> Configured<P> {
                 }
                 Some(Do::Go(both)) => {
                     let goal = both[i];
-                    if let Some(mps) = goal.speed_mps.filter(|mps| self.told_mps[i] != Some(*mps)) {
-                        let turns = mps * self.turns_per_metre[i].abs();
-                        batch.tell(format_args!("w axis{i}.trap_traj.config.vel_limit {turns:.6}"));
-                        self.told_mps[i] = Some(mps);
+                    if let Some(pace) = goal.pace {
+                        self.put_pace(i, pace, batch);
                     }
                     let turns = goal.at_m * self.turns_per_metre[i];
                     batch.tell(format_args!("t {i} {turns:.6}"));
@@ -349,6 +347,20 @@ impl<P: Port> Configured<P> {
             }
         }
         goals
+    }
+
+    /// What of a pace is another than was last told: a trajectory takes it up with its goal.
+    fn put_pace(&mut self, i: usize, pace: Pace, batch: &mut Batch) {
+        let turns_per_metre = self.turns_per_metre[i].abs();
+        let told = self.told[i].replace(pace);
+        if told.is_none_or(|told| told.speed_mps != pace.speed_mps) {
+            let turns = pace.speed_mps * turns_per_metre;
+            batch.tell(format_args!("w axis{i}.trap_traj.config.vel_limit {turns:.6}"));
+        }
+        if told.is_none_or(|told| told.ramp_mps2 != pace.ramp_mps2) {
+            let turns = pace.ramp_mps2 * turns_per_metre;
+            batch.tell(format_args!("w axis{i}.trap_traj.config.accel_limit {turns:.6}"));
+        }
     }
 
     fn understood(

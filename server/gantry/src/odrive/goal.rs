@@ -23,8 +23,17 @@ pub struct AxisState {
 pub struct Goal {
     /// Where it comes to rest unless told otherwise, m.
     pub at_m: f64,
-    /// Its trajectory's greatest speed, m/s; none: as before. A brake needs no other.
-    pub speed_mps: Option<f64>,
+    /// How it goes there; none: as before. A brake needs no other.
+    pub pace: Option<Pace>,
+}
+
+/// How fast a trajectory goes and gets there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pace {
+    /// Its greatest speed, m/s.
+    pub speed_mps: f64,
+    /// How steeply it changes to that, m/s2. As steep as a brake, speeding up would take more current than R5 allows.
+    pub ramp_mps2: f64,
 }
 
 /// The goals of one axis, one after the other.
@@ -59,7 +68,7 @@ impl Aim {
         if wanted.speed_mps == 0.0 {
             self.told_mps = 0.0;
             let place = from_m + brakes_over_m(state.setpoint_mps);
-            return Goal { at_m: *self.rests_at_m.get_or_insert(place), speed_mps: None };
+            return Goal { at_m: *self.rests_at_m.get_or_insert(place), pace: None };
         }
         if self.rests_at_m.take().is_some() {
             self.told_mps = state.setpoint_mps;
@@ -72,7 +81,7 @@ impl Aim {
         let speed_mps = told_mps.abs().max(LEAST_MPS);
         let way = if told_mps == 0.0 { wanted.speed_mps.signum() } else { told_mps.signum() };
         let at_m = from_m + way * (speed_mps * cap_secs + brakes_over_m(speed_mps));
-        Goal { at_m, speed_mps: Some(speed_mps) }
+        Goal { at_m, pace: Some(Pace { speed_mps, ramp_mps2: wanted.acceleration_mps2 }) }
     }
 }
 
@@ -101,7 +110,7 @@ mod tests {
     fn a_goal_is_the_cap_and_a_brake_ahead() {
         let mut aim = Aim { told_mps: 1.0, ..Aim::new(2.5) };
         let goal = aim.next(&wanted(1.0), &moving(2.0, 1.0), 0.0, 0.008);
-        assert_eq!(goal.speed_mps, Some(1.0));
+        assert_eq!(goal.pace, Some(Pace { speed_mps: 1.0, ramp_mps2: 2.5 }));
         assert!((goal.at_m - (2.0 + 0.05 + 0.2)).abs() < 1e-9, "{}", goal.at_m);
     }
 
@@ -109,17 +118,17 @@ mod tests {
     fn a_brake_has_one_place_until_it_is_told_to_go_on() {
         let mut aim = Aim { told_mps: 1.0, ..Aim::new(2.5) };
         let first = aim.next(&wanted(0.0), &moving(2.0, -1.0), 0.0, 0.008);
-        assert_eq!(first, Goal { at_m: 2.0 - 0.2, speed_mps: None });
+        assert_eq!(first, Goal { at_m: 2.0 - 0.2, pace: None });
         assert_eq!(aim.next(&wanted(0.0), &moving(1.9, -0.7), 0.0, 0.008), first);
         let on = aim.next(&wanted(-0.7), &moving(1.9, -0.7), 0.0, 0.008);
-        assert!(on.at_m < 1.8 && on.speed_mps == Some(0.7), "{on:?}");
+        assert!(on.at_m < 1.8 && on.pace.is_some_and(|pace| pace.speed_mps == 0.7), "{on:?}");
     }
 
     #[test]
     fn speed_rises_no_faster_than_its_ramp() {
         let mut aim = Aim::new(2.5);
         let goal = aim.next(&wanted(1.0), &moving(0.0, 0.0), 0.0, 0.008);
-        assert_eq!(goal.speed_mps, Some(0.02));
+        assert_eq!(goal.pace.map(|pace| pace.speed_mps), Some(0.02));
     }
 
     proptest! {

@@ -205,7 +205,7 @@ fn words(look: &Look) -> String {
 /// From being told to have torque to having it. *Unverified* on a board: some milliseconds.
 const LONGEST_SWITCH_ON: Span = Span::from_millis(500);
 /// A goal speeds up by no more than this time allows, however long the last one is ago, s.
-const LONGEST_STEP_SECS: f64 = 0.02;
+const LONGEST_STEP_SECS: f64 = 0.03;
 /// So near to its limit a motor's current is limited, A.
 const AT_LIMIT_AMPS: f64 = 0.1;
 const LONGEST_UPTIME_MILLIS: u64 = 900_000_000;

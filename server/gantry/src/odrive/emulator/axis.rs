@@ -61,6 +61,8 @@ pub struct Axis {
     pub pos_estimate: f64,
     pub vel_estimate: f64,
     trajectory: Option<Trajectory>,
+    /// What the trajectory's change of speed takes, N m.
+    feedforward: f64,
     integrator: f64,
     watchdog_ticks: u32,
     requested: Option<State>,
@@ -122,6 +124,7 @@ impl Axis {
             pos_estimate: 0.0,
             vel_estimate: 0.0,
             trajectory: None,
+            feedforward: 0.0,
             integrator: 0.0,
             watchdog_ticks: 0,
             requested: None,
@@ -227,6 +230,7 @@ impl Axis {
     }
 
     fn follow_inputs(&mut self) {
+        self.feedforward = 0.0;
         match self.config.input_mode {
             PASSTHROUGH => {
                 self.pos_setpoint = f64::from(self.input_pos);
@@ -236,6 +240,8 @@ impl Axis {
                 if let Some(trajectory) = self.trajectory {
                     let (place, speed, is_through) =
                         trajectory.step(self.pos_setpoint, self.vel_setpoint, TICK_SECS);
+                    let acceleration = (speed - self.vel_setpoint) / TICK_SECS;
+                    self.feedforward = f64::from(self.config.inertia) * acceleration;
                     (self.pos_setpoint, self.vel_setpoint) = (place, speed);
                     if is_through {
                         self.trajectory = None;
@@ -262,7 +268,7 @@ impl Axis {
             return None;
         }
         let off = wanted - self.vel_estimate;
-        let torque = f64::from(self.config.vel_gain) * off + self.integrator;
+        let torque = self.feedforward + f64::from(self.config.vel_gain) * off + self.integrator;
         let most = f64::from(self.config.current_lim) * f64::from(self.config.torque_constant);
         if torque.abs() > most {
             self.integrator *= DECAY;

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::emulation::Emulated as _;
-use crate::linked::bench::{Off, drive, speed_up, velocity_covers};
+use crate::linked::bench::{Off, drive, drive_stuttering, speed_up, velocity_covers};
 
 #[test]
 fn it_finds_the_room_from_anywhere() {
@@ -43,6 +43,21 @@ fn it_follows_a_course_at_its_limits() {
     assert!(greatest_mps < 0.1, "{greatest_mps} m/s on the way");
     assert!(last_m < 0.003, "{last_m} m at the end");
     assert!(greatest_amps < 5.0, "{greatest_amps} A");
+}
+
+#[test]
+fn a_host_that_stutters_takes_no_more_current_than_r5_allows() {
+    for late_millis in [2, 4] {
+        let mut bench = Bench::homed();
+        let off = drive_stuttering(&mut bench, Span::from_millis(late_millis));
+        println!(
+            "{late_millis} ms: {:.1} mm and {:.3} m/s on the way, {:.1} A",
+            off.greatest_m * 1e3,
+            off.greatest_mps,
+            off.greatest_amps
+        );
+        assert!(off.greatest_amps < 5.0, "{late_millis} ms late: {} A", off.greatest_amps);
+    }
 }
 
 #[test]
