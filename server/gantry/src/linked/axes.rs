@@ -325,7 +325,8 @@ impl Axes {
             match axis.sequence.step(&axis.plan, seen) {
                 HomingStep::Move(speed_mps) => {
                     let distance_m = speed_mps.abs() * KEEPING_SECS;
-                    speeds[i] = AxisSpeed { speed_mps, acceleration_mps2: RAMP_MPS2, distance_m };
+                    speeds[i] =
+                        AxisSpeed { speed_mps, acceleration_mps2: RAMP_MPS2, slope_mps2: 0.0, distance_m };
                 }
                 HomingStep::Brake => {}
                 HomingStep::Rest { at_m } => speeds[i] = self.keep(i, at_m),
@@ -349,7 +350,7 @@ impl Axes {
 
     fn brake(&self, axis: usize) -> AxisSpeed {
         let limits = [self.settings.limits.x, self.settings.limits.y][axis];
-        AxisSpeed { speed_mps: 0.0, acceleration_mps2: limits.braking_mps2, distance_m: 0.0 }
+        AxisSpeed { speed_mps: 0.0, acceleration_mps2: limits.braking_mps2, slope_mps2: 0.0, distance_m: 0.0 }
     }
 
     fn keep(&mut self, axis: usize, place_m: f64) -> AxisSpeed {

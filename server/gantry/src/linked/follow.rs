@@ -15,6 +15,8 @@ pub struct AxisSpeed {
     pub speed_mps: f64,
     /// Greatest change of speed, m/s2.
     pub acceleration_mps2: f64,
+    /// How its course goes on to change the speed, signed, m/s2: for a controller that can be told so.
+    pub slope_mps2: f64,
     /// The distance cap, m.
     pub distance_m: f64,
 }
@@ -60,7 +62,8 @@ impl Follower {
                 let most = OVERSPEED * self.axis(i).speed_mps;
                 (velocity_mps + acceleration_mps2 * ahead_secs + correction).clamp(-most, most)
             };
-            self.axis_speed(i, speed_mps, measured_mps, valid_secs)
+            let slope_mps2 = if speed_mps == 0.0 { 0.0 } else { acceleration_mps2 };
+            AxisSpeed { slope_mps2, ..self.axis_speed(i, speed_mps, measured_mps, valid_secs) }
         })
     }
 
@@ -81,7 +84,8 @@ impl Follower {
         let limits = self.axis(axis);
         let slows = speed_mps * measured_mps >= 0.0 && speed_mps.abs() < measured_mps.abs();
         let ramp_mps2 = if slows { limits.braking_mps2 } else { STEEPER * limits.acceleration_mps2 };
-        AxisSpeed { speed_mps, acceleration_mps2: ramp_mps2, distance_m: speed_mps.abs() * valid_secs }
+        let distance_m = speed_mps.abs() * valid_secs;
+        AxisSpeed { speed_mps, acceleration_mps2: ramp_mps2, slope_mps2: 0.0, distance_m }
     }
 
     const fn axis(&self, axis: usize) -> &covr_engine::machine::AxisLimits {

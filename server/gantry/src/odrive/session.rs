@@ -20,7 +20,6 @@ pub struct Session<P> {
     axes: Axes,
     aims: [Aim; 2],
     last: Option<(Look, Time)>,
-    told_at: Time,
     torque: Torque,
     /// Why the board has let a motor go by itself, in its own words.
     failure: Option<String>,
@@ -49,7 +48,6 @@ impl<P: Port> Session<P> {
             axes: Axes::new(settings.axes(), stood_at),
             aims: limits.map(|limits| Aim::new(limits.braking_mps2)),
             last: None,
-            told_at: Time::ZERO,
             torque: Torque::Off,
             failure: None,
             temperatures_c: [0.0; 2],
@@ -80,12 +78,8 @@ impl<P: Port> Session<P> {
             self.torque = Torque::On;
         }
         let since_secs = (now - looked_at).secs();
-        let period_secs = (now - self.told_at).secs().clamp(0.0, LONGEST_STEP_SECS);
-        self.told_at = now;
-        let goal = |i: usize| self.aims[i].next(&speeds[i], &look.axes[i], since_secs, period_secs);
-        let [x, y] = [0, 1];
-        let mut goal = goal;
-        Do::Go([goal(x), goal(y)])
+        let mut goal = |i: usize| self.aims[i].next(&speeds[i], &look.axes[i], since_secs);
+        Do::Go([goal(0), goal(1)])
     }
 
     fn see(&mut self, look: Look, at: Time) {
@@ -204,8 +198,6 @@ fn words(look: &Look) -> String {
 
 /// From being told to have torque to having it. *Unverified* on a board: some milliseconds.
 const LONGEST_SWITCH_ON: Span = Span::from_millis(500);
-/// A goal speeds up by no more than this time allows, however long the last one is ago, s.
-const LONGEST_STEP_SECS: f64 = 0.03;
 /// So near to its limit a motor's current is limited, A.
 const AT_LIMIT_AMPS: f64 = 0.1;
 const LONGEST_UPTIME_MILLIS: u64 = 900_000_000;
