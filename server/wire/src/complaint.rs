@@ -2,20 +2,20 @@
 
 /// A refused value.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Complaint {
+pub struct Complaint {
     /// In what way it is wrong.
-    pub(crate) fault: Fault,
+    pub fault: Fault,
     /// The key of a missing field, below the path that serde gives.
-    pub(crate) key: Option<String>,
+    pub key: Option<String>,
     /// What was found.
-    pub(crate) found: String,
+    pub found: String,
     /// What was expected.
-    pub(crate) expected: String,
+    pub expected: String,
 }
 
 /// In what way a value is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Fault {
+pub enum Fault {
     /// A field that must be there is not.
     Missing,
     /// A field that nobody knows, or the same one twice.
@@ -30,7 +30,7 @@ pub(crate) enum Fault {
 
 impl Complaint {
     /// Take apart one message of serde. `format` names what the text should have been: "JSON".
-    pub(crate) fn parse(message: &str, format: &str) -> Self {
+    pub fn parse(message: &str, format: &str) -> Self {
         let message = without_place(message);
         if let Some(rest) = message.strip_prefix("missing field `") {
             let key = rest.split('`').next().unwrap_or_default();

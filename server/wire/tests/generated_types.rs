@@ -13,6 +13,7 @@ use covr_wire::calibration::{
 use covr_wire::client::{ErrorCode, FromClient, ToClient};
 use covr_wire::commissioning::Commissioning;
 use covr_wire::dashboard::{Event, FromDashboard, ToDashboard};
+use covr_wire::phrase::Phrase;
 use covr_wire::reason::Reason;
 use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
 use covr_wire::scene::{SceneDocument, SceneError, SceneWarning};
@@ -55,6 +56,7 @@ fn generate() -> BTreeMap<String, String> {
     PriorChange::export_all(&config).expect("priors");
     SceneDocument::export_all(&config).expect("scenes");
     SceneError::export_all(&config).expect("scene errors");
+    Phrase::export_all(&config).expect("phrases");
     SceneWarning::export_all(&config).expect("scene warnings");
     FromClient::export_all(&config).expect("client messages");
     ToClient::export_all(&config).expect("messages to clients");
@@ -70,7 +72,7 @@ fn generate() -> BTreeMap<String, String> {
 }
 
 /// What the page's catalogues must have a sentence for: every reason and refusal of a calibration with its English one, the
-/// kinds of events, and the codes of what clients say wrong.
+/// kinds of events, every phrase of a finding, and the codes of what clients say wrong.
 fn sentences() -> String {
     let reasons = Reason::examples().into_iter().map(|why| json!({ "text": why.to_string(), "reason": why }));
     let refusals = CalibrationRefusal::examples().into_iter();
@@ -78,11 +80,14 @@ fn sentences() -> String {
     let codes = schemars::schema_for!(ErrorCode).to_value();
     let codes =
         codes["oneOf"].as_array().expect("one value for each code").iter().map(|code| code["const"].clone());
+    let phrases: serde_json::Map<_, _> =
+        Phrase::all().map(|(id, english)| (id.to_owned(), english.into())).collect();
     let all = json!({
         "reasons": reasons.collect::<Vec<_>>(),
         "calibration_refusals": refusals.collect::<Vec<_>>(),
         "event_kinds": Event::KINDS,
         "client_errors": codes.collect::<Vec<_>>(),
+        "phrases": phrases,
     });
     format!("{}\n", serde_json::to_string_pretty(&all).expect("texts as JSON"))
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use covr_engine::frames::Floor;
 use covr_engine::machine::Travel;
+use covr_wire::phrase::is_value;
 use covr_wire::scene::{MAX_SCENE_BYTES, SCHEMA, SceneError, parse_scene, scene_schema, scene_warnings};
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -18,7 +19,17 @@ fn example(name: &str) -> String {
 }
 
 fn errors(scene: &Value) -> Vec<SceneError> {
-    parse_scene(scene.to_string().as_bytes()).err().unwrap_or_default()
+    let errors = parse_scene(scene.to_string().as_bytes()).err().unwrap_or_default();
+    errors.iter().for_each(check_phrases);
+    errors
+}
+
+/// What is said has an id, so that a page can say it in another language.
+fn check_phrases(error: &SceneError) {
+    let parts = [(&error.found, &error.found_as), (&error.expected, &error.expected_as)];
+    for (text, phrase) in parts {
+        assert!(phrase.is_some() || is_value(text), "wire/src/phrase/table.rs has no phrase for: {text}");
+    }
 }
 
 fn changed(mut scene: Value, pointer: &str, to: Value) -> Value {
@@ -437,6 +448,7 @@ proptest! {
         if cut { text.truncate(place) } else { text[place] = byte }
         if let Err(errors) = parse_scene(&text) {
             prop_assert!(!errors.is_empty());
+            errors.iter().for_each(check_phrases);
             prop_assert!(errors.iter().all(|e| e.path.starts_with('$') && !e.found.is_empty()));
         }
     }

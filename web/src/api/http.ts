@@ -11,6 +11,7 @@ import type {
   ConfigInForce,
   Me,
   NewCalibrationPoint,
+  Phrase,
   PriorChange,
   PriorPreview,
   ProblemDocument,
@@ -37,15 +38,18 @@ export class Problem extends Error {
   readonly title: string;
   /** The detail as an id and its values, where it is one of the known reasons. */
   readonly why: Reason | null;
+  /** The detail as a phrase, where it is one of the known ones. */
+  readonly detailAs: Phrase | null;
   readonly errors: readonly SceneError[];
 
-  constructor(status: number, kind: string, title: string, detail: string, why: Reason | null, errors: readonly SceneError[]) {
+  constructor(status: number, kind: string, title: string, detail: string, why: Reason | null, detailAs: Phrase | null, errors: readonly SceneError[]) {
     super(detail);
     this.name = "Problem";
     this.status = status;
     this.kind = kind;
     this.title = title;
     this.why = why;
+    this.detailAs = detailAs;
     this.errors = errors;
   }
 }
@@ -344,13 +348,13 @@ async function problemOf(response: Response): Promise<Problem> {
   try {
     body = record(await response.json());
   } catch {
-    return new Problem(response.status, "", fallback, fallback, null, []);
+    return new Problem(response.status, "", fallback, fallback, null, null, []);
   }
   const title = typeof body.title === "string" ? body.title : fallback;
   const detail = typeof body.detail === "string" ? body.detail : title;
   const errors = Array.isArray(body.errors) ? body.errors.map(sceneErrorOf) : [];
   const kind = typeof body.type === "string" ? (body.type.split(":").at(-1) ?? "") : "";
-  return new Problem(response.status, kind, title, detail, isReason(body.why) ? body.why : null, errors);
+  return new Problem(response.status, kind, title, detail, isReason(body.why) ? body.why : null, phraseOf(body["detail_as" as keyof typeof body]) ?? null, errors);
 }
 
 function sceneErrorOf(value: unknown): SceneError {
@@ -369,7 +373,20 @@ function sceneErrorOf(value: unknown): SceneError {
     column: whole("column"),
     found: text("found"),
     expected: text("expected"),
+    ...optional("found_as", phraseOf(body["found_as"])),
+    ...optional("expected_as", phraseOf(body["expected_as"])),
   };
+}
+
+function optional<Key extends string>(key: Key, phrase: Phrase | undefined): { readonly [K in Key]?: Phrase } {
+  return phrase === undefined ? {} : ({ [key]: phrase } as { readonly [K in Key]: Phrase });
+}
+
+function phraseOf(value: unknown): Phrase | undefined {
+  const { id, values } = record(value);
+  if (typeof id !== "string") return undefined;
+  const texts = Object.entries(record(values)).map(([name, found]) => [name, String(found)] as const);
+  return { id, values: Object.fromEntries(texts) };
 }
 
 function record(value: unknown): Record<string, unknown> {

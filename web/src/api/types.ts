@@ -37,6 +37,7 @@ export type {
   ObjectDocument,
   Outcome,
   Person,
+  Phrase,
   PointOn,
   Pointer,
   PriorChange,

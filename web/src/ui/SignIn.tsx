@@ -35,7 +35,7 @@ export function SignIn(props: { readonly identity: Identity }): JSX.Element {
         <button type="submit" data-testid="sign-in-confirm">{words().shell.access.signIn}</button>
         <span>{words().shell.access.stopWorks}</span>
         <Show when={trouble()}>
-          {(why) => <span class="bad" role="alert" lang="en" data-testid="sign-in-trouble">{why()}</span>}
+          {(why) => <span class="bad" role="alert" data-testid="sign-in-trouble">{why()}</span>}
         </Show>
       </form>
     </Show>

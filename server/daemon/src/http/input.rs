@@ -3,6 +3,7 @@
 use axum::extract::FromRequestParts;
 use axum::http::HeaderMap;
 use axum::http::request::Parts;
+use covr_wire::complaint::Complaint;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use utoipa::{IntoParams, ToSchema};
@@ -101,23 +102,24 @@ pub fn invalid_item(path: &str, found: impl ToString, expected: &str) -> Problem
     let found = found.to_string();
     Problem::invalid(
         format!("{path}: found {found}, expected {expected}"),
-        vec![ProblemItem { path: path.into(), found, expected: expected.into(), line: None, column: None }],
+        vec![ProblemItem::new(path, found, expected)],
     )
 }
 
 fn refused_json(path: String, error: &serde_json::Error) -> Problem {
     let (line, column) = (error.line(), error.column());
-    let words = error.to_string();
-    let words = words.rsplit_once(" at line ").map_or(words.as_str(), |(words, _)| words);
-    let (found, expected) = words.rsplit_once(", expected ").unwrap_or((words, "well-formed JSON"));
+    let Complaint { key, found, expected, .. } = Complaint::parse(&error.to_string(), "JSON");
+    let path = [path, key.unwrap_or_default()].into_iter().filter(|part| !part.is_empty());
+    let path = path.collect::<Vec<_>>().join(".");
     let item = ProblemItem {
-        path,
-        found: found.into(),
-        expected: expected.into(),
         line: u32::try_from(line).ok(),
         column: u32::try_from(column).ok(),
+        ..ProblemItem::new(path, found, expected)
     };
-    Problem::malformed(format!("line {line}, column {column}: {words}"), vec![item])
+    let ProblemItem { path, found, expected, .. } = &item;
+    let place = if path.is_empty() { String::new() } else { format!("{path}: ") };
+    let detail = format!("line {line}, column {column}: {place}found {found}, expected {expected}");
+    Problem::malformed(detail, vec![item])
 }
 
 const AUTHOR_HEADER: &str = "x-covr-author";

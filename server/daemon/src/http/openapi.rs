@@ -14,6 +14,7 @@ use covr_wire::calibration::{
 };
 use covr_wire::commissioning::{Commissioning, NewCommissioning};
 use covr_wire::dashboard::{Event, Snapshot};
+use covr_wire::phrase::Phrase;
 use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
 use covr_wire::scene::{SceneDocument, SceneWarning};
 use schemars::generate::SchemaSettings;
@@ -90,6 +91,7 @@ fn add_wire_schemas(document: &mut Value) {
     generator.subschema_for::<Snapshot>();
     generator.subschema_for::<SceneDocument>();
     generator.subschema_for::<SceneWarning>();
+    generator.subschema_for::<Phrase>();
     generator.subschema_for::<RecordedFrames>();
     generator.subschema_for::<SessionDetail>();
     generator.subschema_for::<ConfigInForce>();

@@ -142,13 +142,7 @@ async fn changes(
 fn invalid(bad: Vec<BadPrior>) -> Problem {
     let words = bad.iter().map(|b| format!("{}: found {}, expected {}", b.object, b.found, b.expected));
     let detail = words.collect::<Vec<_>>().join("; ");
-    let items = bad.into_iter().map(|b| ProblemItem {
-        path: b.object,
-        found: b.found,
-        expected: b.expected,
-        line: None,
-        column: None,
-    });
+    let items = bad.into_iter().map(|b| ProblemItem::new(b.object, b.found, b.expected));
     Problem::invalid(detail, items.collect())
 }
 

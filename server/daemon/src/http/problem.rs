@@ -6,6 +6,7 @@ use axum::extract::Request;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use covr_wire::phrase::Phrase;
 use covr_wire::reason::Reason;
 use serde::{Deserialize, Serialize};
 use ts_rs::TS;
@@ -27,12 +28,18 @@ pub struct Problem {
     /// The HTTP status.
     pub status: u16,
     /// What happened this time, in plain words.
-    pub detail: String,
+    #[schema(value_type = String)]
+    pub detail: Box<str>,
     /// The same as an id and its values, where it is one of the known reasons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(schema_with = reason_schema)]
     #[ts(optional, type = "import(\"../generated/Reason\").Reason")]
     pub why: Option<Box<Reason>>,
+    /// The detail as an id and its values, where it is one of the known phrases.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(schema_with = phrase_schema)]
+    #[ts(optional, type = "import(\"../generated/Phrase\").Phrase")]
+    pub detail_as: Option<Box<Phrase>>,
     /// The path that was asked.
     #[schema(value_type = String)]
     pub instance: Box<str>,
@@ -51,20 +58,41 @@ pub struct ProblemItem {
     pub found: String,
     /// What was expected.
     pub expected: String,
+    /// What was found as an id and its values; none: a value as it stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(schema_with = phrase_schema)]
+    #[ts(optional, type = "import(\"../generated/Phrase\").Phrase")]
+    pub found_as: Option<Box<Phrase>>,
+    /// What was expected as an id and its values; none: a value as it stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(schema_with = phrase_schema)]
+    #[ts(optional, type = "import(\"../generated/Phrase\").Phrase")]
+    pub expected_as: Option<Box<Phrase>>,
     /// Line in the text, from 1, where known.
     pub line: Option<u32>,
     /// Column in the text, from 1, where known.
     pub column: Option<u32>,
 }
 
+impl ProblemItem {
+    /// What is wrong at a path; its place in the text is not known.
+    pub fn new(path: impl Into<String>, found: impl Into<String>, expected: impl Into<String>) -> Self {
+        let (found, expected) = (found.into(), expected.into());
+        let (found_as, expected_as) = (Phrase::of(&found).map(Box::new), Phrase::of(&expected).map(Box::new));
+        Self { path: path.into(), found, expected, found_as, expected_as, line: None, column: None }
+    }
+}
+
 impl Problem {
     /// A problem of a kind; the kind's name ends its URN.
     pub fn new(status: StatusCode, kind: &str, title: &str, detail: impl Into<String>) -> Self {
+        let detail: Box<str> = detail.into().into();
         Self {
             kind: format!("urn:covr:problem:{kind}"),
             title: title.into(),
             status: status.as_u16(),
-            detail: detail.into(),
+            detail_as: Phrase::of(&detail).map(Box::new),
+            detail,
             why: None,
             instance: Box::default(),
             errors: Vec::new(),
@@ -192,6 +220,10 @@ pub async fn finish(request: Request, next: Next) -> Response {
 /// The wire's own schema, which the document has.
 fn reason_schema() -> utoipa::openapi::Ref {
     utoipa::openapi::Ref::from_schema_name("Reason")
+}
+
+fn phrase_schema() -> utoipa::openapi::Ref {
+    utoipa::openapi::Ref::from_schema_name("Phrase")
 }
 
 /// The media type.

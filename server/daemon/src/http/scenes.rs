@@ -225,6 +225,8 @@ pub(super) fn refused(text: &[u8], errors: Vec<SceneError>) -> Problem {
             path: error.path,
             found: error.found,
             expected: error.expected,
+            found_as: error.found_as,
+            expected_as: error.expected_as,
             line: error.line.and_then(|line| line.try_into().ok()),
             column: error.column.and_then(|column| column.try_into().ok()),
         })

@@ -16,6 +16,7 @@ use ts_rs::TS;
 use super::place::Finder;
 use super::{SceneDocument, check, spec};
 use crate::complaint::Complaint;
+use crate::phrase::Phrase;
 
 /// The longest scene, bytes: some 100 meshes of 500 triangles.
 pub const MAX_SCENE_BYTES: usize = 4 * 1024 * 1024;
@@ -33,6 +34,14 @@ pub struct SceneError {
     pub found: String,
     /// What was expected there.
     pub expected: String,
+    /// What was found as an id and its values; none: a value as it stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[ts(optional)]
+    pub found_as: Option<Box<Phrase>>,
+    /// What was expected as an id and its values; none: a value as it stands.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[ts(optional)]
+    pub expected_as: Option<Box<Phrase>>,
 }
 
 /// Something in a good scene that is worth a second look.
@@ -46,6 +55,10 @@ pub struct SceneWarning {
     pub column: Option<usize>,
     /// What is found, in plain words.
     pub found: String,
+    /// The same as an id and its values.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[ts(optional)]
+    pub found_as: Option<Box<Phrase>>,
 }
 
 /// What is worth a second look in a scene that was read from this text: what a machine of this travel cannot serve well, then its
@@ -55,7 +68,13 @@ pub fn scene_warnings(text: &[u8], scene: &Scene, travel: &Travel) -> Vec<SceneW
     let warning = |under: &str, finding: Finding| {
         let path = format!("${under}.{}", finding.path);
         let (line, column) = finder.find(&path).unzip();
-        SceneWarning { path, line, column, found: finding.words }
+        SceneWarning {
+            path,
+            line,
+            column,
+            found_as: Phrase::of(&finding.words).map(Box::new),
+            found: finding.words,
+        }
     };
     let placing = placing::findings(scene, travel).into_iter().map(|finding| warning("", finding));
     placing.chain(scene.findings().into_iter().map(|finding| warning(".scenario", finding))).collect()
@@ -65,9 +84,10 @@ pub fn scene_warnings(text: &[u8], scene: &Scene, travel: &Travel) -> Vec<SceneW
 pub fn parse_scene(text: &[u8]) -> Result<(SceneDocument, Scene), Vec<SceneError>> {
     if text.len() > MAX_SCENE_BYTES {
         let found = format!("{} bytes", text.len());
-        return Err(vec![SceneError::new("$".into(), found, format!("at most {MAX_SCENE_BYTES} bytes"))]);
+        let error = SceneError::new("$".into(), found, format!("at most {MAX_SCENE_BYTES} bytes"));
+        return Err(vec![error.with_phrases()]);
     }
-    let document = read(text).map_err(|error| vec![error])?;
+    let document = read(text).map_err(|error| vec![error.with_phrases()])?;
     match build_scene(&document) {
         Ok(scene) => Ok((document, scene)),
         Err(mut errors) => {
@@ -101,7 +121,7 @@ pub fn build_scene(document: &SceneDocument) -> Result<Scene, Vec<SceneError>> {
         }
     }
     errors.truncate(MOST_ERRORS);
-    Err(errors)
+    Err(errors.into_iter().map(SceneError::with_phrases).collect())
 }
 
 /// A scene with more errors than this has one error many times.
@@ -119,7 +139,15 @@ fn read(text: &[u8]) -> Result<SceneDocument, SceneError> {
 
 impl SceneError {
     pub(super) fn new(path: String, found: impl Display, expected: impl Display) -> Self {
-        Self { path, line: None, column: None, found: found.to_string(), expected: expected.to_string() }
+        let (found, expected) = (found.to_string(), expected.to_string());
+        Self { path, line: None, column: None, found, expected, found_as: None, expected_as: None }
+    }
+
+    /// With the ids of its phrases: looked up at the end, for those that are told.
+    fn with_phrases(self) -> Self {
+        let (found_as, expected_as) =
+            (Phrase::of(&self.found).map(Box::new), Phrase::of(&self.expected).map(Box::new));
+        Self { found_as, expected_as, ..self }
     }
 
     fn from_serde(path: &str, error: &serde_json::Error) -> Self {
@@ -137,11 +165,9 @@ impl SceneError {
         }
         let known = error.line() > 0;
         Self {
-            path: full,
             line: known.then(|| error.line()),
             column: known.then(|| error.column().max(1)),
-            found: complaint.found,
-            expected: complaint.expected,
+            ..Self::new(full, complaint.found, complaint.expected)
         }
     }
 }

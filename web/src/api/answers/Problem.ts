@@ -26,6 +26,10 @@ detail: string,
  */
 why?: import("../generated/Reason").Reason, 
 /**
+ * The detail as an id and its values, where it is one of the known phrases.
+ */
+detail_as?: import("../generated/Phrase").Phrase, 
+/**
  * The path that was asked.
  */
 instance: string, 

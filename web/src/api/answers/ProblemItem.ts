@@ -17,6 +17,14 @@ found: string,
  */
 expected: string, 
 /**
+ * What was found as an id and its values; none: a value as it stands.
+ */
+found_as?: import("../generated/Phrase").Phrase, 
+/**
+ * What was expected as an id and its values; none: a value as it stands.
+ */
+expected_as?: import("../generated/Phrase").Phrase, 
+/**
  * Line in the text, from 1, where known.
  */
 line: number | null, 

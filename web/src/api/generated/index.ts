@@ -66,6 +66,7 @@ export type { ObjectPlace } from "./ObjectPlace";
 export type { Outcome } from "./Outcome";
 export type { Person } from "./Person";
 export type { PersonName } from "./PersonName";
+export type { Phrase } from "./Phrase";
 export type { PointOn } from "./PointOn";
 export type { Pointer } from "./Pointer";
 export type { PongReceived } from "./PongReceived";

@@ -89,7 +89,12 @@ export const shell = {
     unreachable: "no connection to the server",
     unanswered: (secs: number) => `no answer within ${secs} s`,
     pastEvents: (why: string) => `past events: ${why}`,
+    item: (path: string, found: string, expected: string) => `${path === "" ? "" : `${path}: `}found ${found}, expected ${expected}`,
+    more: (count: number) => ` (and ${count} more)`,
     kinds: {
+      "unauthorized": "not signed in",
+      "unavailable": "not now; try again in a moment",
+      "too-many": "asked too often",
       "forbidden": "not allowed from here",
       "not-found": "there is nothing of this name",
       "method-not-allowed": "the server does not do this",

@@ -89,7 +89,12 @@ export const shell = {
     unreachable: "aucune connexion au serveur",
     unanswered: (secs: number) => `aucune réponse en ${secs} s`,
     pastEvents: (why: string) => `événements passés : ${why}`,
+    item: (path: string, found: string, expected: string) => `${path === "" ? "" : `${path} : `}trouvé ${found}, attendu ${expected}`,
+    more: (count: number) => ` (et ${count} de plus)`,
     kinds: {
+      "unauthorized": "pas connecté",
+      "unavailable": "pas maintenant ; réessayez dans un instant",
+      "too-many": "demandé trop souvent",
       "forbidden": "pas permis depuis ici",
       "not-found": "rien ne porte ce nom",
       "method-not-allowed": "le serveur ne fait pas cela",

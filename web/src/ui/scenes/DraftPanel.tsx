@@ -2,6 +2,7 @@
 import { createMemo, createSignal, For, Show, type JSX } from "solid-js";
 import { words } from "../../i18n";
 import type { SceneSummary } from "../../api/types";
+import { errorWords, phraseWords } from "../../lib/phraseWords";
 import { drawable, nameIn, placeErrors, type PlacedError } from "../../lib/sceneText";
 import type { Live } from "../../live/live";
 import type { Check, Draft, Upload } from "../../views/upload";
@@ -96,8 +97,9 @@ export function DraftPanel(props: {
                         {entry.line === null ? words().records.draft.noPlace : words().records.draft.at(entry.line, entry.error.column ?? 1)}
                       </span>
                       <code>{entry.error.path}</code>
-                      <span lang="en">
-                        {words().records.draft.found} <code>{entry.error.found}</code>, {words().records.draft.expected} <b>{entry.error.expected}</b>
+                      <span>
+                        {words().records.draft.found} <code lang={errorWords(entry.error).found.lang}>{errorWords(entry.error).found.text}</code>,{" "}
+                        {words().records.draft.expected} <b lang={errorWords(entry.error).expected.lang}>{errorWords(entry.error).expected.text}</b>
                       </span>
                     </button>
                   </li>
@@ -114,7 +116,7 @@ export function DraftPanel(props: {
                     <span class="error-place">
                       {warning.line === null ? words().records.draft.noPlace : words().records.draft.at(warning.line, warning.column ?? 1)}
                     </span>{" "}
-                    <code>{warning.path}</code> <span lang="en">{warning.found}</span>
+                    <code>{warning.path}</code> <span lang={phraseWords(warning.found_as, warning.found).lang}>{phraseWords(warning.found_as, warning.found).text}</span>
                   </li>
                 )}
               </For>

@@ -4,6 +4,7 @@
  */
 import { createMemo, createSignal, For, onCleanup, onMount, type JSX } from "solid-js";
 import { words } from "../../i18n";
+import { errorWords } from "../../lib/phraseWords";
 import { lineStarts, type PlacedError } from "../../lib/sceneText";
 
 /** The text field; `reach` is given the way to a finding's place. */
@@ -65,7 +66,7 @@ export function SceneEditor(props: {
           {(mark) => (
             <div class="scene-mark" data-testid="scene-mark" data-line={mark.line} style={{ top: topOf(mark.line) }}>
               <span style={{ left: `calc(${mark.columns + 2}ch - ${scroll().left}px)` }}>
-                ◀ {mark.found.map(({ error }) => words().records.draft.mark(error.found, error.expected)).join("; ")}
+                ◀ {mark.found.map(({ error }) => words().records.draft.mark(errorWords(error).found.text, errorWords(error).expected.text)).join("; ")}
               </span>
             </div>
           )}

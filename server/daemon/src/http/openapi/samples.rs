@@ -9,6 +9,7 @@ use covr_wire::calibration::{
 use covr_wire::client::Convention;
 use covr_wire::commissioning::{BrakeRun, Commissioning, CommissioningStep, NewCommissioning};
 use covr_wire::examples;
+use covr_wire::phrase::Phrase;
 use covr_wire::records::{RecordedFrame, SceneInForce, Session, SessionDetail};
 use covr_wire::scene::SceneWarning;
 use serde::Serialize;
@@ -194,21 +195,18 @@ fn calibration() -> Calibration {
 
 /// One thing that is wrong.
 pub fn problem_item() -> ProblemItem {
-    ProblemItem {
-        path: "$.objects[0].prior".into(),
-        found: "7".into(),
-        expected: "a number from 0 to 1".into(),
-        line: Some(5),
-        column: Some(17),
-    }
+    let item = ProblemItem::new("$.objects[0].prior", "7", "a number from 0 to 1");
+    ProblemItem { line: Some(5), column: Some(17), ..item }
 }
 
 fn scene_warning() -> SceneWarning {
+    let found = "nothing leads on from the state \"walls\", and it is not marked as final";
     SceneWarning {
         path: "$.scenario.states[2]".into(),
         line: Some(31),
         column: Some(7),
-        found: "nothing leads on from the state \"walls\", and it is not marked as final".into(),
+        found: found.into(),
+        found_as: Phrase::of(found).map(Box::new),
     }
 }
 

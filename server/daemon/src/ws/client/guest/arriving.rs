@@ -56,7 +56,7 @@ impl Guest {
             }
             let holder = self.app.roster.by_token(token).await;
             self.who.caller =
-                holder.map(Caller::Known).map_err(|why| unauthorized(Problem::from(why).detail))?;
+                holder.map(Caller::Known).map_err(|why| unauthorized(Problem::from(why).detail.into()))?;
         }
         Ok(())
     }
