@@ -26,6 +26,14 @@ export class Headset {
   async put(at: Place, carried = false): Promise<void> {
     await this.#page.evaluate((place) => { Object.assign(window, { place }); }, { at, carried });
   }
+
+  /** Its person's hand meets an object, or lets go of it. */
+  async touch(object: string, began: boolean): Promise<void> {
+    await this.#page.evaluate(([id, begins]) => {
+      const { say } = window as unknown as { say: (message: unknown) => void };
+      say({ type: begins ? "touch_began" : "touch_ended", person: "Ada", object: id, client_time_micros: Math.round(performance.now() * 1000) });
+    }, [object, began] as const);
+  }
 }
 
 /** Where a client without a calibration is taken to be when it is at a place: its tracking space is taken for the room, m. */
@@ -47,6 +55,7 @@ async function wear(name: string): Promise<void> {
     socket.onerror = reject;
   });
   const say = (message: unknown): void => { socket.send(JSON.stringify(message)); };
+  Object.assign(window, { say });
   say({ type: "hello", name, convention: "openxr" });
   say({ type: "enter", person: "Ada" });
   let sequence = 0;

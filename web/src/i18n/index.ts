@@ -45,7 +45,7 @@ export function preferredLanguage(asked: readonly string[]): Language {
 }
 
 /** The same keys and functions, any words. */
-type Widened<T> = T extends string
+export type Widened<T> = T extends string
   ? string
   : T extends (...given: infer Given) => string
     ? (...given: Given) => string

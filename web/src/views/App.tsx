@@ -16,7 +16,7 @@ import { SignIn } from "../ui/SignIn";
 import { Strip } from "../ui/Strip";
 import { Tour } from "../ui/Tour";
 import { LiveView } from "./LiveView";
-import { fetchLater, HelpView, MachineView, ScenarioView, ScenesView, SessionsView, SettingsView } from "./later";
+import { EditorView, fetchLater, HelpView, MachineView, ScenarioView, ScenesView, SessionsView, SettingsView } from "./later";
 import { createRoute } from "./route";
 import { createUpload } from "./upload";
 
@@ -89,6 +89,9 @@ export function App(): JSX.Element {
             </Match>
             <Match when={route().view === "scenario"}>
               <ScenarioView live={live} />
+            </Match>
+            <Match when={route().view === "scenes" && route().rest[0] === "edit"}>
+              <EditorView live={live} upload={upload} author={author()} at={route().rest.slice(1)} />
             </Match>
             <Match when={route().view === "scenes"}>
               <ScenesView live={live} upload={upload} author={author()} />

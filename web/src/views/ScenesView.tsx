@@ -69,6 +69,7 @@ export function ScenesView(props: { readonly live: Live; readonly upload: Upload
           <button type="button" data-testid="scene-choose" onClick={() => { chooser.click(); }}>
             {words().records.scenes.choose}
           </button>
+          <p class="upload-editor"><a data-testid="open-editor" href="#/scenes/edit">{words().records.scenes.openEditor}</a></p>
           <Reports upload={props.upload} />
         </section>
         <section class="panel" aria-labelledby="stored-title">

@@ -18,6 +18,7 @@ function view<P extends object>(fetch: () => Promise<Component<P>>): Component<P
 
 export const ScenarioView = view(async () => (await import("./ScenarioView")).ScenarioView);
 export const ScenesView = view(async () => (await import("./ScenesView")).ScenesView);
+export const EditorView = view(async () => (await import("./EditorView")).EditorView);
 export const SessionsView = view(async () => (await import("./SessionsView")).SessionsView);
 export const MachineView = view(async () => (await import("./MachineView")).MachineView);
 export const SettingsView = view(async () => (await import("./SettingsView")).SettingsView);
@@ -25,7 +26,7 @@ export const HelpView = view(async () => (await import("./HelpView")).HelpView);
 
 /** Fetches all of them, once. */
 export function fetchLater(): void {
-  for (const one of [ScenarioView, ScenesView, SessionsView, MachineView, SettingsView, HelpView]) void one.preload();
+  for (const one of [ScenarioView, ScenesView, EditorView, SessionsView, MachineView, SettingsView, HelpView]) void one.preload();
 }
 
 const AGAIN_MILLIS = 1000;

@@ -2,8 +2,8 @@
 import { createEffect, createMemo, createSignal, For, on, Show, type JSX } from "solid-js";
 import { words } from "../../i18n";
 import type { SceneDocument } from "../../api/types";
-import { metres } from "../../lib/format";
-import { changesBetween, diffScenes, foldDiff, type DiffLine, type SceneChange } from "../../lib/sceneDiff";
+import { changesBetween, diffScenes, foldDiff, type DiffLine } from "../../lib/sceneDiff";
+import { changeWords } from "./changeWords";
 
 /** Summary and lines; what is the same far and wide unfolds on demand. */
 export function Comparison(props: { readonly before: SceneDocument; readonly after: SceneDocument }): JSX.Element {
@@ -15,7 +15,7 @@ export function Comparison(props: { readonly before: SceneDocument; readonly aft
     <Show when={parts().some(({ kind }) => kind === "lines")} fallback={<p class="empty" data-testid="diff-same">{words().records.diff.same}</p>}>
       <h3>{words().records.diff.summary}</h3>
       <ul class="diff-summary" data-testid="diff-summary">
-        <For each={changes()}>{(change) => <li>{wordsOf(change)}</li>}</For>
+        <For each={changes()}>{(change) => <li>{changeWords(change)}</li>}</For>
       </ul>
       <h3 id="diff-lines">{words().records.diff.lines}</h3>
       <div class="diff scrolls" role="region" tabindex="0" aria-labelledby="diff-lines" data-testid="diff">
@@ -52,26 +52,6 @@ function Line(props: { readonly line: DiffLine }): JSX.Element {
       </code>
     </div>
   );
-}
-
-function wordsOf(change: SceneChange): string {
-  const say = words().records.diff;
-  switch (change.kind) {
-    case "field":
-      return say.fieldChanged(say.field[change.field]);
-    case "added":
-      return say.addedThing(say.part[change.part], change.name);
-    case "removed":
-      return say.removedThing(say.part[change.part], change.name);
-    case "moved":
-      return say.moved(change.name, metres(change.byM));
-    case "prior":
-      return say.prior(change.name, change.from, change.to);
-    case "switched":
-      return change.on ? say.switchedOn(change.name) : say.switchedOff(change.name);
-    case "changed":
-      return say.changedThing(say.part[change.part], change.name, change.fields.join(", "));
-  }
 }
 
 /** Unchanged lines that are shown about a change. */

@@ -116,6 +116,7 @@ export function SceneDetail(props: {
                     <button type="button" data-testid="scene-activate" disabled={isActive() || activating()} aria-expanded={asking()} onClick={() => { setOutcome(null); setAsking(true); }}>
                       {words().records.activate.button}
                     </button>
+                    <a class="button" data-testid="scene-edit-plan" href={`#/scenes/edit/${props.id}/${shown() ?? 1}`}>{words().records.scenes.editPlan}</a>
                     <button type="button" data-testid="scene-edit" onClick={() => { props.edit(fileNameOf(scene().name, shown() ?? 1), `${writeJson(scene())}\n`, props.id); }}>
                       {words().records.scenes.edit}
                     </button>
