@@ -330,61 +330,6 @@ fn everything_wrong_with_a_scene_is_said_at_once_with_its_line() {
 }
 
 #[test]
-fn twelve_mistakes_in_a_scenario_are_said_at_once_each_with_its_line() {
-    let text = r#"{
-  "schema": "covr.scene.v2",
-  "name": "mistakes in a scenario",
-  "arena": {"min": [0, 0], "max": [4, 4]},
-  "objects": [
-    {"id": "a", "position": [1, 1, 1], "shape": {"kind": "sphere", "radius": 0.1}},
-    {"id": "b", "position": [2, 1, 1], "shape": {"kind": "sphere", "radius": 0.1}}
-  ],
-  "zones": [{"id": "mat", "shape": {"kind": "circle", "centre": [1, 1], "radius": 0.3}}],
-  "scenario": {
-    "initial": "nowhere",
-    "variables": [{"id": "n", "start": 0}],
-    "states": [
-      {"id": "one", "enabled": ["c"],
-       "priors": {"b": 0.4},
-       "interactions": {"a": {"kind": "lead", "path": [[1, 1]], "speed": 2}},
-       "transitions": [
-         {"when": {"kind": "in_zone", "zone": "rug"}, "to": "two"},
-         {"when": {"kind": "variable", "variable": "n", "is": "==", "value": true}, "to": "one"}
-       ]},
-      {"id": "one", "final": true,
-       "entry": [{"kind": "add", "variable": "m", "amount": 1}],
-       "transitions": [
-         {"on": [{"kind": "touch_began", "object": "z"}], "when": {"kind": "time_in_state", "secs": 9999}, "to": "one"}
-       ]}
-    ]
-  }
-}"#;
-    let errors = parse_scene(text.as_bytes()).expect_err("a bad scene");
-    let said: Vec<_> = errors.iter().map(|e| (e.line.unwrap_or(0), e.path.as_str())).collect();
-    assert_eq!(
-        said,
-        [
-            (21, "$.scenario.states[1].id"),
-            (11, "$.scenario.initial"),
-            (14, "$.scenario.states[0].enabled[0]"),
-            (15, "$.scenario.states[0].priors.b"),
-            (16, "$.scenario.states[0].interactions.a.speed"),
-            (18, "$.scenario.states[0].transitions[0].when.zone"),
-            (18, "$.scenario.states[0].transitions[0].to"),
-            (19, "$.scenario.states[0].transitions[1].when.value"),
-            (22, "$.scenario.states[1].entry[0].variable"),
-            (24, "$.scenario.states[1].transitions[0].on[0].object"),
-            (24, "$.scenario.states[1].transitions[0].when.secs"),
-            (23, "$.scenario.states[1].transitions"),
-        ]
-    );
-    assert_eq!(
-        (errors[4].found.as_str(), errors[4].expected.as_str()),
-        ("2", "a number from 0.05 to 0.6 m/s (R14)")
-    );
-}
-
-#[test]
 fn a_scene_of_the_version_before_is_read_as_one_of_this() {
     let mut old = small();
     old["schema"] = json!("covr.scene.v1");
