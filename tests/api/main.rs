@@ -4,6 +4,7 @@
 
 mod calibrations;
 mod clients;
+mod cockpit;
 mod commissioning;
 mod config;
 mod contract;

@@ -20,12 +20,23 @@ it("leads a scenario on by cues, skips and goes back, and says where it is", { t
   await shows("scenario-state", "Reaching for the light");
   await shows("scenario-runs", "It stands");
   expect(await page.getByTestId("cue-lights on").isDisabled()).toBe(true);
+  // What is looked at before a start, on every dashboard the same, with who ticked it.
+  const other = await Dashboard.open(`${server.url}/#/scenario`);
+  await page.getByTestId("check-0").check();
+  await shows("checklist-done", "1 of 6 ticked");
+  await until("the other dashboard has it", 10_000, async () => (await other.says("checklist-done")).includes("1 of 6 ticked"));
+  expect(await other.says("checklist")).toContain("game master, ");
 
   await page.getByTestId("view-live").click();
   await dashboard.homeAndArm();
   await page.keyboard.press("2");
   await shows("scenario-runs", "It runs.");
   await shows("scenario-enabled", "light bulb in the cupboard, prior 1.00");
+  await shows("prior-now-bulb", "1.00");
+  await page.getByTestId("note").fill("the visitor laughs");
+  await page.getByTestId("note").press("Enter");
+  await shows("notes", "the visitor laughs");
+  await until("the other dashboard has the note", 10_000, async () => (await other.says("notes")).includes("the visitor laughs"));
   expect(await page.getByTestId("cue-walls").isDisabled()).toBe(true);
   await page.getByTestId("cue-lights on").press("Enter");
   await shows("scenario-state", "The lights are on");
@@ -43,6 +54,8 @@ it("leads a scenario on by cues, skips and goes back, and says where it is", { t
   await shows("scenario-state", "The magic wall");
   await shows("scenario-next-list", "magic wall, south is touched for 10 s");
   await dashboard.picture("scenario");
+  await page.getByTestId("notes").scrollIntoViewIfNeeded();
+  await dashboard.picture("scenario-notes");
 
   await page.getByTestId("rewind").click();
   await page.getByTestId("leap-cancel").click();
@@ -61,6 +74,9 @@ it("leads a scenario on by cues, skips and goes back, and says where it is", { t
 
   await server.json("POST", "/api/v1/disarm");
   await shows("scenario-left-in", "The magic wall");
+  await shows("checklist-done", "0 sur 6 cochés");
+  const noted = dashboard.events.find(({ kind }) => kind === "note");
+  expect(noted?.detail).toMatchObject({ text: "the visitor laughs", author: "game master" });
   const entered = dashboard.events.filter(({ kind }) => kind === "state_entered").map(({ summary }) => summary);
   expect(entered).toEqual([
     "the scenario is in dark: the machine was armed",

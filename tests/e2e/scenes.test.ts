@@ -74,6 +74,10 @@ it("shows where a bad scene is bad, has it mended there, and stores, shows, acti
   // The picture, and activation with its warning.
   await page.getByTestId("scene-preview").waitFor({ timeout: 5_000 });
   expect(await page.getByTestId("scene-detail").textContent()).toContain("only the scene is drawn");
+  // Whether the column is in time from each object to each other.
+  await page.getByTestId("pairs").waitFor({ timeout: 5_000 });
+  expect(await dashboard.says("pair-lamp-door")).toMatch(/^\d\.\d \/ 6\.6 s/);
+  expect(await dashboard.says("pairs-late")).toContain("in time between any two objects");
   await page.getByTestId("scene-activate").click();
   expect(await dashboard.says("activate-dialog")).toContain("Priors start from this document");
   await page.getByTestId("activate-leave").click();

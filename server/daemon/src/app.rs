@@ -16,6 +16,7 @@ use tokio::sync::{Semaphore, watch};
 
 use crate::access::{Caller, Change, Roster};
 use crate::calibrations::Calibrations;
+use crate::checklist::Checklist;
 use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::commissionings::Commissionings;
@@ -58,6 +59,8 @@ pub struct App {
     pub persons: Arc<Persons>,
     /// The active scene.
     pub stage: Arc<Stage>,
+    /// What is looked at before a start.
+    pub checklist: Checklist,
     /// Where the clients' tracking spaces are.
     pub calibrations: Calibrations,
     /// Connected VR clients.

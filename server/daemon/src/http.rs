@@ -3,6 +3,7 @@
 mod access;
 mod asyncapi;
 mod calibrations;
+mod cockpit;
 mod commissionings;
 mod config;
 mod contact;
@@ -39,6 +40,7 @@ use tower_http::timeout::TimeoutLayer;
 use tower_http::trace::TraceLayer;
 
 pub use access::{Me, Ticket};
+pub use cockpit::Noted;
 pub use health::Readiness;
 pub use limits::{Limits, address};
 pub use machine::{Answered, StopAcknowledged};
@@ -59,6 +61,7 @@ pub fn router(app: Arc<App>) -> Router {
                     .merge(scenes::routes())
                     .merge(scenario::routes())
                     .merge(contact::routes())
+                    .merge(cockpit::routes())
                     .merge(priors::routes())
                     .merge(sessions::routes())
                     .merge(config::routes())

@@ -10,6 +10,7 @@ pub mod access;
 pub mod app;
 pub mod calibrations;
 pub mod cert_command;
+pub mod checklist;
 pub mod cli;
 pub mod clients;
 pub mod clock;

@@ -1,7 +1,7 @@
 //! Who is who: a person is known by the client's name and the client's own name for them, and keeps one
 //! number for the run of the server, also across a lost connection.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use covr_engine::observation::PersonId;
@@ -34,6 +34,8 @@ struct Known {
     next: u32,
     inside: BTreeMap<(String, String), Inside>,
     names: BTreeMap<PersonId, String>,
+    /// Objects under hands, as their clients say.
+    touches: BTreeMap<PersonId, BTreeSet<String>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -63,7 +65,9 @@ impl Persons {
 
     /// A person left the arena.
     pub fn leave(&self, id: PersonId) {
-        self.known().inside.retain(|_, inside| inside.id != id);
+        let mut known = self.known();
+        known.inside.retain(|_, inside| inside.id != id);
+        known.touches.remove(&id);
     }
 
     /// The client of a person is gone; the person is still there.
@@ -81,6 +85,29 @@ impl Persons {
     /// The names of everybody of this run.
     pub fn names(&self) -> BTreeMap<PersonId, String> {
         self.known().names.clone()
+    }
+
+    /// A person's hand met an object, or let go of it.
+    pub fn touches(&self, id: PersonId, object: &str, begins: bool) {
+        let mut known = self.known();
+        let touched = known.touches.entry(id).or_default();
+        if begins {
+            touched.insert(object.to_owned());
+        } else {
+            touched.remove(object);
+        }
+    }
+
+    /// Somebody who touches an object now, and the object.
+    pub fn touch(&self) -> Option<(String, String)> {
+        let known = self.known();
+        let mut touches = known.touches.iter();
+        touches.find_map(|(id, objects)| Some((known.names.get(id)?.clone(), objects.first()?.clone())))
+    }
+
+    /// Another scene is played: what was touched is there no more.
+    pub fn forget_touches(&self) {
+        self.known().touches.clear();
     }
 
     /// The names of everybody in the arena.
@@ -112,6 +139,21 @@ mod tests {
         persons.disconnect(id);
         assert!(persons.is_inside(id));
         assert_eq!(persons.enter("quest", "ada"), Ok(Entry::Back(id)));
+    }
+
+    #[test]
+    fn a_touch_lasts_until_it_is_let_go_or_its_person_leaves() {
+        let persons = Persons::default();
+        let Ok(Entry::New(id)) = persons.enter("quest", "ada") else { panic!() };
+        assert_eq!(persons.touch(), None);
+        persons.touches(id, "wall", true);
+        persons.disconnect(id);
+        assert_eq!(persons.touch(), Some(("ada".into(), "wall".into())), "a lost client lets go of nothing");
+        persons.touches(id, "wall", false);
+        assert_eq!(persons.touch(), None);
+        persons.touches(id, "wall", true);
+        persons.leave(id);
+        assert_eq!(persons.touch(), None);
     }
 
     #[test]

@@ -26,6 +26,7 @@ use tokio::time::MissedTickBehavior;
 use crate::access::{Caller, Roster};
 use crate::app::{App, Asker};
 use crate::calibrations::Calibrations;
+use crate::checklist::Checklist;
 use crate::clients::Clients;
 use crate::clock::Clock;
 use crate::commissionings::Commissionings;
@@ -174,6 +175,7 @@ impl Server {
             recording,
             persons,
             stage,
+            checklist: Checklist::default(),
             calibrations,
             commissionings,
             clients,

@@ -6,8 +6,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use covr_server::checklist::ChecklistNow;
 use covr_server::config;
-use covr_server::http::{Answered, Me, PriorsPreview, Problem, SceneStored, StopAcknowledged};
+use covr_server::http::{Answered, Me, PriorsPreview, Problem, SceneChecked, SceneStored, StopAcknowledged};
 use ts_rs::{Config, TS};
 
 #[test]
@@ -34,6 +35,8 @@ fn generate() -> BTreeMap<String, String> {
     Answered::export_all(&config).expect("what came of a request");
     StopAcknowledged::export_all(&config).expect("a stop");
     SceneStored::export_all(&config).expect("a stored scene");
+    SceneChecked::export_all(&config).expect("a checked scene");
+    ChecklistNow::export_all(&config).expect("the checklist");
     Problem::export_all(&config).expect("a problem");
     Me::export_all(&config).expect("who I am");
     PriorsPreview::export_all(&config).expect("a preview");

@@ -246,7 +246,7 @@ pub struct Event {
 
 impl Event {
     /// Every kind.
-    pub const KINDS: [&'static str; 32] = [
+    pub const KINDS: &'static [&'static str] = &[
         "mode_changed",
         "rule_breached",
         "rule_cleared",
@@ -279,6 +279,8 @@ impl Event {
         "calibration_chosen",
         "machine_commissioned",
         "commissioning_refused",
+        "note",
+        "checklist_ticked",
     ];
 }
 

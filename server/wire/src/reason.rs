@@ -220,6 +220,13 @@ pub enum Reason {
     },
     /// Calibrate: not while the machine is armed, finds its switches or is moved by hand.
     NotWhileItMoves,
+    /// A scene waits until nobody touches anything.
+    TouchGoesOn {
+        /// Name.
+        person: String,
+        /// The scene's id of the object.
+        object: String,
+    },
     /// Calibrate: none is in the making.
     NoCalibrationDraft,
     /// Calibrate: the one in the making has no such point.

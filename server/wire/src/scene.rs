@@ -3,6 +3,7 @@
 //! The ranges in the schema's attributes are the ones that [`parse_scene`] checks; a test holds them together.
 
 mod check;
+mod pairs;
 mod parse;
 mod place;
 mod scenario;
@@ -13,6 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use ts_rs::TS;
 
+pub use pairs::{ScenePairs, scene_pairs, walk_secs};
 pub use parse::{MAX_SCENE_BYTES, SceneError, SceneWarning, build_scene, parse_scene, scene_warnings};
 pub use scenario::{
     ActDocument, ChangingPriorDocument, ComparisonDocument, ConditionDocument, InteractionDocument,
@@ -68,6 +70,10 @@ pub struct SceneDocument {
     /// What can be served when, and what leads on; none: every enabled object, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scenario: Option<ScenarioDocument>,
+    /// What is to be looked at before the machine is armed, for this scene; none: the usual list.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 30), inner(length(min = 1, max = 200)))]
+    pub checklist: Vec<String>,
 }
 
 /// The arena's rectangle on the floor.

@@ -16,7 +16,7 @@ use covr_wire::dashboard::{Event, FromDashboard, ToDashboard};
 use covr_wire::phrase::Phrase;
 use covr_wire::reason::Reason;
 use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
-use covr_wire::scene::{SceneDocument, SceneError, SceneWarning};
+use covr_wire::scene::{SceneDocument, SceneError, ScenePairs, SceneWarning};
 use serde_json::json;
 use ts_rs::{Config, TS};
 
@@ -56,6 +56,7 @@ fn generate() -> BTreeMap<String, String> {
     PriorChange::export_all(&config).expect("priors");
     SceneDocument::export_all(&config).expect("scenes");
     SceneError::export_all(&config).expect("scene errors");
+    ScenePairs::export_all(&config).expect("pairs of objects");
     Phrase::export_all(&config).expect("phrases");
     SceneWarning::export_all(&config).expect("scene warnings");
     FromClient::export_all(&config).expect("client messages");

@@ -7,6 +7,7 @@ import type {
   CalibrationDraft,
   CalibrationSummary,
   CalibrationTask,
+  ChecklistNow,
   Commissioning,
   ConfigInForce,
   Me,
@@ -17,12 +18,12 @@ import type {
   ProblemDocument,
   Reason,
   RecordedFrame,
+  SceneChecked,
   SceneDocument,
   SceneError,
   SceneStored,
   SceneSummary,
   SceneVersionSummary,
-  SceneWarning,
   Session,
   SessionDetail,
   StopAcknowledged,
@@ -124,12 +125,7 @@ export async function replaceScene(id: number, text: string, author: string): Pr
   return (await call("PUT", `/api/v1/scenes/${id}`, { text, author })) as SceneStored;
 }
 
-/** What the server says of a scene that it would store. */
-export interface SceneChecked {
-  readonly name: string;
-  readonly objects: number;
-  readonly warnings: readonly SceneWarning[];
-}
+export type { SceneChecked };
 
 /** `POST /api/v1/scenes/check`: whether the server would store it. */
 export async function checkScene(text: string, author: string): Promise<SceneChecked> {
@@ -261,6 +257,21 @@ export async function chooseCalibration(id: number, inForce: boolean, author: st
 /** `POST /api/v1/calibrations/{id}/scene`: a prop's calibration as a new version of the active scene. */
 export async function writeCalibrationIntoScene(id: number, author: string): Promise<SceneStored> {
   return (await call("POST", `/api/v1/calibrations/${id}/scene`, { text: "", author })) as SceneStored;
+}
+
+/** `POST /api/v1/notes`: a note in the record, of the running session. */
+export async function addNote(text: string, author: string): Promise<void> {
+  await call("POST", "/api/v1/notes", { text: JSON.stringify({ text }), author });
+}
+
+/** `GET /api/v1/checklist`. */
+export async function readChecklist(): Promise<ChecklistNow> {
+  return (await call("GET", "/api/v1/checklist")) as ChecklistNow;
+}
+
+/** `PUT /api/v1/checklist/{item}`. */
+export async function tickItem(item: number, ticked: boolean, author: string): Promise<ChecklistNow> {
+  return (await call("PUT", `/api/v1/checklist/${item}`, { text: JSON.stringify({ ticked }), author })) as ChecklistNow;
 }
 
 /** `GET /api/v1/config`. */

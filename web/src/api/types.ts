@@ -52,6 +52,7 @@ export type {
   SceneDocument,
   SceneError,
   SceneInForce,
+  ScenePairs,
   SceneSummary,
   SceneVersionSummary,
   SceneWarning,
@@ -74,5 +75,7 @@ export type { Me } from "./answers/Me";
 export type { Role } from "./answers/Role";
 export type { Problem as ProblemDocument } from "./answers/Problem";
 export type { PriorsPreview as PriorPreview } from "./answers/PriorsPreview";
+export type { ChecklistNow } from "./answers/ChecklistNow";
+export type { SceneChecked } from "./answers/SceneChecked";
 export type { SceneStored } from "./answers/SceneStored";
 export type { StopAcknowledged } from "./answers/StopAcknowledged";

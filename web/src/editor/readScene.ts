@@ -161,6 +161,7 @@ const SCENE_SHAPE = fields(
   { schema: TEXT, name: TEXT, arena: fields({ min: PAIR, max: PAIR }), objects: listOf(fields({ id: TEXT, position: TRIPLE, shape: OBJECT_SHAPE }, { label: TEXT, yaw: NUMBER, prop: orNull(TEXT), prior: NUMBER, enabled: YES_NO })) },
   {
     description: TEXT,
+    checklist: listOf(TEXT),
     column: fields({ size: PAIR }),
     props: listOf(fields({ id: TEXT, offset: PAIR }, { label: TEXT, facing: NUMBER, size: PAIR })),
     keep_outs: listOf(PLACED),

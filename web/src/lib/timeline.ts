@@ -8,7 +8,7 @@ export const GROUPS = {
   mode: ["mode_changed", "request_accepted", "request_refused", "homed", "jog_began", "jog_ended"],
   people: ["person_entered", "person_left", "served", "origin_changed", "touch_began", "touch_ended", "interaction_began", "interaction_ended", "contact_over"],
   priors: ["prior_changed"],
-  scenes: ["scene_activated", "scene_stored", "scene_event"],
+  scenes: ["scene_activated", "scene_stored", "scene_event", "state_entered", "scenario_cut", "note", "checklist_ticked"],
   clients: ["client_connected", "client_gone", "client_error", "signed_in", "signed_out", "token_made", "token_revoked", "token_taken_back"],
   calibration: ["calibration_accepted", "calibration_refused", "calibration_chosen", "machine_commissioned", "commissioning_refused"],
 } as const satisfies Readonly<Record<string, readonly string[]>>;

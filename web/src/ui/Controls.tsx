@@ -96,7 +96,7 @@ export function Controls(props: { readonly live: Live }): JSX.Element {
             data-testid="answer"
             classList={{ refused: last().answer.kind === "unanswered" || outcomeOf(last().answer) === "refused" }}
           >
-            {words().shell.machine.request[last().request]}: {outcomeWords(last().answer)}
+            {words().shell.machine.request[last().request]}{words().shell.colon}{outcomeWords(last().answer)}
             <Show when={detailOf(last().answer)}>{(detail) => <>, <Said of={detail()} /></>}</Show>
           </p>
         )}

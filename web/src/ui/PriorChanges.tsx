@@ -21,7 +21,7 @@ export function PriorChanges(props: {
       {(last) => (
         <details class="prior-changes">
           <summary data-testid="prior-last-change">
-            {text().lastChange} {who(last())}: {what(last())}
+            {text().lastChange} {who(last())}{words().shell.colon}{what(last())}
           </summary>
           <div class="scrolls" tabindex="0" role="region" aria-label={text().changes}>
             <table data-testid="prior-changes">

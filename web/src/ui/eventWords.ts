@@ -79,6 +79,10 @@ function textOf(event: WireEvent, label: (object: string) => string): EventWords
       return of(text[event.kind], ["name"]);
     case "machine_commissioned":
       return of(text.machine_commissioned, ["author"]);
+    case "note":
+      return of(text.note, ["author", "text"]);
+    case "checklist_ticked":
+      return of(detail["ticked"] === false ? text.checklist_unticked : text.checklist_ticked, ["author", "text"]);
     case "commissioning_refused":
       return of(text.commissioning_refused, ["author"], why("detail"));
     case "homed": {

@@ -88,7 +88,7 @@ export function App(): JSX.Element {
               <LiveView live={live} author={author()} preferences={store} />
             </Match>
             <Match when={route().view === "scenario"}>
-              <ScenarioView live={live} />
+              <ScenarioView live={live} author={author()} />
             </Match>
             <Match when={route().view === "scenes" && route().rest[0] === "edit"}>
               <EditorView live={live} upload={upload} author={author()} at={route().rest.slice(1)} />

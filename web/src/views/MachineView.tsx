@@ -86,7 +86,7 @@ function Axes(props: { readonly column: Column; readonly shape: MachineShape | n
         </tbody>
       </table>
       <dl class="facts">
-        <For each={[0, 1] as const}>{(axis) => <Fact name={`${say().limits}: ${name(axis)}`} value={limits(axis)} />}</For>
+        <For each={[0, 1] as const}>{(axis) => <Fact name={`${say().limits}${words().shell.colon}${name(axis)}`} value={limits(axis)} />}</For>
       </dl>
       <p class="empty">{props.column.homed ? say().homed : say().notHomed}</p>
       <Show when={props.column.home_repeatability_m}>

@@ -9,11 +9,14 @@ import type { Live } from "../live/live";
 import type { Answer } from "../live/requests";
 import { wordsOf } from "../ui/Controls";
 import { ContactPanel } from "../ui/scenario/ContactPanel";
+import { ChecklistPanel } from "../ui/scenario/ChecklistPanel";
+import { NotesPanel } from "../ui/scenario/NotesPanel";
+import { PriorsPanel } from "../ui/scenario/PriorsPanel";
 import { SkipPanel, type Leap } from "../ui/scenario/SkipPanel";
 import { StateGraphPanel } from "../ui/scenario/StateGraphPanel";
 
 /** The view. */
-export function ScenarioView(props: { readonly live: Live }): JSX.Element {
+export function ScenarioView(props: { readonly live: Live; readonly author: string }): JSX.Element {
   const say = () => words().scenario;
   const scene = (): SceneDocument | null => props.live.scene()?.scene ?? null;
   const now = (): Scenario | null => props.live.snapshot()?.scenario ?? null;
@@ -55,6 +58,7 @@ export function ScenarioView(props: { readonly live: Live }): JSX.Element {
                   <Show when={props.live.snapshot()}>
                     {(snapshot) => <ContactPanel scene={document()} snapshot={snapshot()} may={may("arm_contact")} ask={(request, what) => void ask(request, what)} />}
                   </Show>
+                  <PriorsPanel scene={document()} now={scenario()} objects={props.live.snapshot()?.objects ?? []} />
                   <CuePanel scene={document()} now={scenario()} may={may("cue") && scenario().runs} give={(name) => void ask({ cue: name }, name)} />
                   <SkipPanel
                     scene={document()}
@@ -73,6 +77,10 @@ export function ScenarioView(props: { readonly live: Live }): JSX.Element {
           </Show>
         )}
       </Show>
+      <div class="scenario-panels">
+        <ChecklistPanel live={props.live} author={props.author} />
+        <NotesPanel live={props.live} author={props.author} />
+      </div>
     </div>
   );
 }
@@ -187,7 +195,7 @@ function CuePanel(props: Part & { readonly may: boolean; readonly give: (name: s
 function describe(way: TransitionDocument | undefined, scene: SceneDocument): string {
   if (way === undefined) return "";
   const waits = waitsFor(way, scene);
-  return way.label === undefined || way.label === "" ? waits : `${way.label}: ${waits}`;
+  return way.label === undefined || way.label === "" ? waits : `${way.label}${words().shell.colon}${waits}`;
 }
 
 function stateOf(scene: SceneDocument, id: string): StateDocument | undefined {

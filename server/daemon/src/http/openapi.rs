@@ -16,7 +16,7 @@ use covr_wire::commissioning::{Commissioning, NewCommissioning};
 use covr_wire::dashboard::{Event, Snapshot};
 use covr_wire::phrase::Phrase;
 use covr_wire::records::{ConfigInForce, RecordedFrames, Session, SessionDetail};
-use covr_wire::scene::{SceneDocument, SceneWarning};
+use covr_wire::scene::{SceneDocument, ScenePairs, SceneWarning};
 use schemars::generate::SchemaSettings;
 use serde_json::{Value, json};
 use utoipa::OpenApi;
@@ -92,6 +92,7 @@ fn add_wire_schemas(document: &mut Value) {
     generator.subschema_for::<SceneDocument>();
     generator.subschema_for::<SceneWarning>();
     generator.subschema_for::<Phrase>();
+    generator.subschema_for::<ScenePairs>();
     generator.subschema_for::<RecordedFrames>();
     generator.subschema_for::<SessionDetail>();
     generator.subschema_for::<ConfigInForce>();

@@ -7,9 +7,12 @@ use axum::body::Bytes;
 use axum::extract::{Path, Query, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use covr_engine::mode::Mode;
 use covr_wire::answers::{SceneSummary, SceneVersionSummary};
 use covr_wire::reason::Reason;
-use covr_wire::scene::{SceneError, SceneWarning, parse_scene, scene_schema, scene_warnings};
+use covr_wire::scene::{
+    SceneError, ScenePairs, SceneWarning, parse_scene, scene_pairs, scene_schema, scene_warnings,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use ts_rs::TS;
@@ -35,7 +38,7 @@ pub struct SceneStored {
 }
 
 /// A scene passed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema, TS)]
 pub struct SceneChecked {
     /// Always true: a scene that does not pass is a problem.
     pub valid: bool,
@@ -45,7 +48,12 @@ pub struct SceneChecked {
     pub objects: usize,
     /// What is worth a second look: what this machine cannot serve well, and its scenario.
     #[schema(schema_with = warnings_schema)]
+    #[ts(type = "import(\"../generated/SceneWarning\").SceneWarning[]")]
     pub warnings: Vec<SceneWarning>,
+    /// Each pair of its objects: how long the column needs, and how long people; null for more than 60 objects.
+    #[schema(schema_with = pairs_schema)]
+    #[ts(type = "import(\"../generated/ScenePairs\").ScenePairs | null")]
+    pub pairs: Option<ScenePairs>,
 }
 
 /// A scene is active.
@@ -111,7 +119,14 @@ async fn add(State(app): State<Arc<App>>, asker: Asker, body: Bytes) -> Result<R
 async fn check(State(app): State<Arc<App>>, body: Bytes) -> Result<Json<SceneChecked>, Problem> {
     let (document, scene) = parse_scene(&body).map_err(|errors| refused(&body, errors))?;
     let warnings = scene_warnings(&body, &scene, &app.config.machine.travel());
-    Ok(Json(SceneChecked { valid: true, objects: document.objects.len(), name: document.name, warnings }))
+    let pairs = scene_pairs(&scene, &app.config.machine.limits());
+    Ok(Json(SceneChecked {
+        valid: true,
+        objects: document.objects.len(),
+        name: document.name,
+        warnings,
+        pairs,
+    }))
 }
 
 /// A scene's document. Version, author and date are in the headers `X-Covr-Version`, `X-Covr-Author` and `X-Covr-Created`.
@@ -184,6 +199,7 @@ async fn activate(
     Query(Version { version }): Query<Version>,
 ) -> Result<Json<SceneActivated>, Problem> {
     let stored = app.store.scene(number(&id)?, version).await?.ok_or_else(|| no_scene(&id, version))?;
+    nobody_touches(&app)?;
     let (id, version, name) = (stored.id, stored.version, stored.document.name.clone());
     let answer = app.stage.activate(&app.control, &app.store, stored).await.map_err(|why| match why {
         ActivationRefused::Invalid(errors) => refused(&[], errors),
@@ -191,6 +207,7 @@ async fn activate(
         ActivationRefused::NotDelivered(why) => why.into(),
         ActivationRefused::Store(why) => why.into(),
     })?;
+    app.persons.forget_touches();
     app.recorder.record(
         "scene_activated",
         format!("{asker} activated \"{name}\" (scene {id}, version {version})"),
@@ -235,9 +252,23 @@ pub(super) fn refused(text: &[u8], errors: Vec<SceneError>) -> Problem {
     if is_json { Problem::invalid(detail, items) } else { Problem::malformed(detail, items) }
 }
 
+/// Nothing is put under somebody's hand: a scene waits while the machine is armed and an object is touched.
+fn nobody_touches(app: &App) -> Result<(), Problem> {
+    let mode = app.control.published().snapshot.mode;
+    let touch = matches!(mode, Mode::Following | Mode::ProtectiveStop).then(|| app.persons.touch()).flatten();
+    match touch {
+        Some((person, object)) => Err(Problem::refused(Reason::TouchGoesOn { person, object })),
+        None => Ok(()),
+    }
+}
+
 /// The wire's own schema, which the document has.
 fn warnings_schema() -> utoipa::openapi::schema::Array {
     utoipa::openapi::schema::Array::new(utoipa::openapi::Ref::from_schema_name("SceneWarning"))
+}
+
+fn pairs_schema() -> utoipa::openapi::Ref {
+    utoipa::openapi::Ref::from_schema_name("ScenePairs")
 }
 
 fn number(id: &str) -> Result<i64, Problem> {

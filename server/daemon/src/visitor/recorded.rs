@@ -99,6 +99,7 @@ pub fn scene_of(recording: &Recording) -> Option<SceneDocument> {
     Some(SceneDocument {
         zones: Vec::new(),
         scenario: None,
+        checklist: Vec::new(),
         schema: SCHEMA.into(),
         name: format!("Recorded: {}{what}", recording.dataset),
         description: "The targets of a recording, as spheres.".into(),

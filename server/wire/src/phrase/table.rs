@@ -175,6 +175,7 @@ pub(super) const PHRASES: &[(&str, &str)] = &[
     ("reason_stop", "why the machine may leave its stop, in words"),
     ("reason_back", "why the scenario goes back, in words"),
     ("reason_due", "why, in {least:number} to {most:number} characters"),
+    ("item_place", "the place of an item of the list, from 0"),
     ("json_or_csv", "json or csv"),
     ("utc_time", "a time as in RFC 3339, in UTC"),
     ("prop_due", "the id of a prop"),

@@ -100,6 +100,10 @@ impl fmt::Display for Reason {
                 part.in_words()
             ),
             Self::BadCalibration { refusal } => write!(f, "{refusal}"),
+            Self::TouchGoesOn { person, object } => write!(
+                f,
+                "{person} touches {object}, and the machine is armed: no other scene until the hand is gone, or the machine is disarmed"
+            ),
             Self::NotWhileItMoves => {
                 write!(f, "not while the machine is armed, finds its switches or is moved by hand")
             }

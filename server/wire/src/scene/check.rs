@@ -45,6 +45,10 @@ pub(super) fn check(document: &SceneDocument) -> Vec<SceneError> {
     if let Some(scenario) = &document.scenario {
         problems.scenario(scenario);
     }
+    problems.count("$.checklist", document.checklist.len(), 0..=30);
+    for (i, item) in document.checklist.iter().enumerate() {
+        problems.text(&format!("$.checklist[{i}]"), item, 1..=200);
+    }
     problems.0
 }
 

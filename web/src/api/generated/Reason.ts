@@ -153,7 +153,15 @@ is: string, } | { "id": "bad_calibration",
 /**
  * Why.
  */
-refusal: CalibrationRefusal, } | { "id": "not_while_it_moves" } | { "id": "no_calibration_draft" } | { "id": "no_calibration_point", 
+refusal: CalibrationRefusal, } | { "id": "not_while_it_moves" } | { "id": "touch_goes_on", 
+/**
+ * Name.
+ */
+person: string, 
+/**
+ * The scene's id of the object.
+ */
+object: string, } | { "id": "no_calibration_draft" } | { "id": "no_calibration_point", 
 /**
  * As it was asked for.
  */

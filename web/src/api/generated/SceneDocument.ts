@@ -50,4 +50,8 @@ zones?: Array<ZoneDocument>,
 /**
  * What can be served when, and what leads on; none: every enabled object, always.
  */
-scenario?: ScenarioDocument | null, };
+scenario?: ScenarioDocument | null, 
+/**
+ * What is to be looked at before the machine is armed, for this scene; none: the usual list.
+ */
+checklist?: Array<string>, };

@@ -93,6 +93,7 @@ export type { SceneDocument } from "./SceneDocument";
 export type { SceneError } from "./SceneError";
 export type { SceneEvent } from "./SceneEvent";
 export type { SceneInForce } from "./SceneInForce";
+export type { ScenePairs } from "./ScenePairs";
 export type { SceneSummary } from "./SceneSummary";
 export type { SceneVersionSummary } from "./SceneVersionSummary";
 export type { SceneWarning } from "./SceneWarning";

@@ -101,6 +101,14 @@ export const records = {
     switchedOff: (name: string) => `“${name}” switched off`,
     changedThing: (part: string, name: string, fields: string) => `${part} “${name}” changed: ${fields}`,
   },
+  pairs: {
+    title: "From object to object",
+    means: "What the column needs, from rest and with nobody in the way, beside what a person needs at a usual walk.",
+    late: (count: number) => (count === 1 ? "1 way is walked faster than the column is there." : `${count} ways are walked faster than the column is there.`),
+    inTime: "The column is in time between any two objects.",
+    lateMark: "late",
+    fromTo: "from / to",
+  },
   activate: {
     button: "Activate…",
     title: (name: string, version: number) => `Activate “${name}”, version ${version}?`,
@@ -211,6 +219,8 @@ export const records = {
       rule_cleared: "rule cleared",
       request_accepted: "request",
       request_refused: "refused",
+      note: "note",
+      checklist_ticked: "checklist",
       machine_commissioned: "commissioned",
       commissioning_refused: "commissioning refused",
       homed: "homed",

@@ -1,5 +1,7 @@
 /** Words of the area `shell`: what stands on every view. */
 export const shell = {
+  /** Between what something is called and what it is. */
+  colon: ": ",
   pages: { label: "Views", live: "Live", scenario: "Scenario", scenes: "Scenes", sessions: "Sessions", machine: "Machine", settings: "Settings", help: "Help" },
   author: { label: "you are", title: "Your name", means: "Your name, as the records of priors and scenes name you" },
   access: {

@@ -161,6 +161,7 @@ export const phrases: Readonly<Record<string, string>> = {
   reason_stop: "pourquoi la machine peut quitter son arrêt, en mots",
   reason_back: "pourquoi le scénario revient en arrière, en mots",
   reason_due: "pourquoi, en {least} à {most} caractères",
+  item_place: "la place d’un point de la liste, à partir de 0",
   json_or_csv: "json ou csv",
   utc_time: "un instant selon la RFC 3339, en UTC",
   prop_due: "l’identifiant d’un accessoire",

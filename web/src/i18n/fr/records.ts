@@ -101,6 +101,14 @@ export const records = {
     switchedOff: (name: string) => `« ${name} » : mis hors service`,
     changedThing: (part: string, name: string, fields: string) => `${part} « ${name} », modification : ${fields}`,
   },
+  pairs: {
+    title: "D’objet en objet",
+    means: "Ce qu’il faut à la colonne, depuis l’arrêt et sans personne sur le chemin, et ce qu’il faut à quelqu’un qui marche normalement.",
+    late: (count: number) => (count === 1 ? "1 chemin se marche plus vite que la colonne n’y arrive." : `${count} chemins se marchent plus vite que la colonne n’y arrive.`),
+    inTime: "La colonne est à temps entre deux objets quelconques.",
+    lateMark: "en retard",
+    fromTo: "de / à",
+  },
   activate: {
     button: "Activer…",
     title: (name: string, version: number) => `Activer « ${name} », version ${version} ?`,
@@ -211,6 +219,8 @@ export const records = {
       rule_cleared: "règle levée",
       request_accepted: "demande",
       request_refused: "refus",
+      note: "note",
+      checklist_ticked: "liste de contrôle",
       machine_commissioned: "mise en service",
       commissioning_refused: "mise en service refusée",
       homed: "origine prise",

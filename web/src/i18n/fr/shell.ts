@@ -1,5 +1,7 @@
 /** Words of the area `shell`: what stands on every view. */
 export const shell = {
+  /** Between what something is called and what it is. */
+  colon: " : ",
   pages: { label: "Vues", live: "En direct", scenario: "Scénario", scenes: "Scènes", sessions: "Séances", machine: "Machine", settings: "Réglages", help: "Aide" },
   author: { label: "vous êtes", title: "Votre nom", means: "Votre nom, tel qu’il figure dans l’historique des a priori et des scènes" },
   access: {

@@ -7,6 +7,7 @@ import { dayAndTime } from "../../lib/format";
 import { fileNameOf, writeJson } from "../../lib/sceneText";
 import type { Live } from "../../live/live";
 import { Arena } from "../Arena";
+import { CheckedPanel } from "./CheckedPanel";
 import { Comparison } from "./Comparison";
 import { troubleOf } from "../../lib/trouble";
 
@@ -142,6 +143,7 @@ export function SceneDetail(props: {
                     />
                   </div>
                   <small>{isActive() ? words().records.scenes.previewLive : words().records.scenes.previewStill}</small>
+                  <CheckedPanel scene={scene()} author={props.author} may={props.live.identity.may("POST /api/v1/scenes/check")} />
                 </>
               )}
             </Show>

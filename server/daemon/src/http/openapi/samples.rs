@@ -11,7 +11,7 @@ use covr_wire::commissioning::{BrakeRun, Commissioning, CommissioningStep, NewCo
 use covr_wire::examples;
 use covr_wire::phrase::Phrase;
 use covr_wire::records::{RecordedFrame, SceneInForce, Session, SessionDetail};
-use covr_wire::scene::SceneWarning;
+use covr_wire::scene::{ScenePairs, SceneWarning};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -19,6 +19,7 @@ use super::super::access::TokenRow;
 use super::super::{Answered, PriorsChanged, ProblemItem, Readiness, Ticket};
 use super::super::{SceneActivated, SceneChecked, SceneStored, StopAcknowledged};
 use crate::access::Role;
+use crate::checklist::{ChecklistItem, ChecklistNow};
 
 /// An example of a schema; none for a name that has none.
 pub fn of(schema: &str) -> Option<Value> {
@@ -71,7 +72,14 @@ pub fn of(schema: &str) -> Option<Value> {
             name: "Kitchen".into(),
             objects: 12,
             warnings: vec![scene_warning()],
+            pairs: Some(scene_pairs()),
         }),
+        "ScenePairs" => value(scene_pairs()),
+        "NoteBody" => Some(json!({ "text": "the visitor laughed at the wall" })),
+        "Noted" => Some(json!({ "session": 12 })),
+        "TickBody" => Some(json!({ "ticked": true })),
+        "ChecklistNow" => value(ChecklistNow { of_scene: false, items: vec![checklist_item()] }),
+        "ChecklistItem" => value(checklist_item()),
         "SceneWarning" => value(scene_warning()),
         "CueBody" => Some(json!({ "name": "lights on" })),
         "ContactBody" => Some(json!({ "person": 3, "secs": 60.0 })),
@@ -197,6 +205,23 @@ fn calibration() -> Calibration {
 pub fn problem_item() -> ProblemItem {
     let item = ProblemItem::new("$.objects[0].prior", "7", "a number from 0 to 1");
     ProblemItem { line: Some(5), column: Some(17), ..item }
+}
+
+fn scene_pairs() -> ScenePairs {
+    ScenePairs {
+        objects: vec!["lamp".into(), "door".into()],
+        serve_secs: vec![vec![0.0, 2.7], vec![2.7, 0.0]],
+        walk_secs: vec![vec![0.0, 4.69], vec![4.69, 0.0]],
+    }
+}
+
+fn checklist_item() -> ChecklistItem {
+    ChecklistItem {
+        text: "The stop is in reach and was tried today".into(),
+        id: Some("stop_in_reach".into()),
+        ticked_by: Some("Ada".into()),
+        ticked_at: Some(AT.into()),
+    }
 }
 
 fn scene_warning() -> SceneWarning {

@@ -300,6 +300,7 @@ impl Guest {
         }
         self.record(kind, format!("{} {verb} {}", touch.person, touch.object), detail);
         let object = touch.object.as_str().into();
+        self.app.persons.touches(id, &touch.object, kind == "touch_began");
         self.tell(if kind == "touch_began" {
             Observation::TouchBegan(id, object)
         } else {
