@@ -27,6 +27,17 @@ export function SceneForm(props: { readonly editor: Editor }): JSX.Element {
         value={scene().description ?? ""}
         set={(description) => { props.editor.change(({ description: _, ...now }) => (description === "" ? now : { ...now, description })); }}
       />
+      <LongField
+        editor={props.editor}
+        label={say().form.checklist}
+        testId="scene-checklist"
+        path="$.checklist"
+        value={(scene().checklist ?? []).join("\n")}
+        set={(text) => {
+          const checklist = text.split("\n").map((line) => line.trim()).filter((line) => line !== "");
+          props.editor.change(({ checklist: _, ...now }) => (checklist.length === 0 ? now : { ...now, checklist }));
+        }}
+      />
       <Row label={say().form.arenaMin}>
         <NumberField editor={props.editor} label="x" unit="m" testId="arena-min-x" path="$.arena.min" value={scene().arena.min[0]} set={corner("min", 0)} />
         <NumberField editor={props.editor} label="y" unit="m" testId="arena-min-y" value={scene().arena.min[1]} set={corner("min", 1)} />
@@ -91,7 +102,7 @@ function ObjectFields(props: { readonly editor: Editor; readonly object: ObjectD
   const at = (axis: 0 | 1 | 2) => (value: number): void => {
     props.set({ position: props.object.position.map((old, place) => (place === axis ? value : old)) as [number, number, number] });
   };
-  const props_ = () => props.editor.scene().props ?? [];
+  const hung = () => props.editor.scene().props ?? [];
   return (
     <>
       <Row label={say().form.position}>
@@ -105,7 +116,7 @@ function ObjectFields(props: { readonly editor: Editor; readonly object: ObjectD
         testId="object-prop"
         path={`${props.path}.prop`}
         value={props.object.prop ?? ""}
-        options={[{ value: "", word: say().form.noProp }, ...props_().map((prop) => ({ value: prop.id, word: nameOf(prop) }))]}
+        options={[{ value: "", word: say().form.noProp }, ...hung().map((prop) => ({ value: prop.id, word: nameOf(prop) }))]}
         set={(prop) => { props.set({ prop: prop === "" ? null : prop }); }}
       />
       <NumberField editor={props.editor} label={say().form.prior} testId="object-prior" path={`${props.path}.prior`} value={props.object.prior} set={(prior) => { props.set({ prior }); }} />

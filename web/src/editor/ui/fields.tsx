@@ -43,7 +43,7 @@ export function LongField(props: FieldProps & { readonly value: string; readonly
   return (
     <Field {...props}>
       {(id, bad, described) => (
-        <textarea id={id} data-testid={props.testId} rows={3} maxlength={2000} aria-invalid={bad()} aria-describedby={described()} value={props.value} onChange={(event) => { props.set(event.currentTarget.value); }} />
+        <textarea id={id} data-testid={props.testId} rows={3} aria-invalid={bad()} aria-describedby={described()} value={props.value} onChange={(event) => { props.set(event.currentTarget.value); }} />
       )}
     </Field>
   );
@@ -127,6 +127,7 @@ export function FindingText(props: { readonly finding: Finding }): JSX.Element {
     </span>
   );
 }
+
 
 function Field(props: FieldProps & { readonly children: (id: string, bad: () => boolean, described: () => string | undefined) => JSX.Element }): JSX.Element {
   const id = createUniqueId();

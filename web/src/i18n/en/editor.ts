@@ -100,6 +100,7 @@ export const editor = {
     removeCorner: (number: number) => `Remove corner ${number}`,
     name: "Name",
     description: "Description",
+    checklist: "Before the start, one line each",
     arenaMin: "Arena, lower corner",
     arenaMax: "Arena, upper corner",
     column: "Column, size",

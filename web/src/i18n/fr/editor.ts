@@ -103,6 +103,7 @@ export const editor: Widened<typeof english> = {
     removeCorner: (number: number) => `Enlever le sommet ${number}`,
     name: "Nom",
     description: "Description",
+    checklist: "Avant le départ, une ligne par point",
     arenaMin: "Arène, coin inférieur",
     arenaMax: "Arène, coin supérieur",
     column: "Colonne, taille",
