@@ -220,6 +220,13 @@ pub enum Reason {
     },
     /// Calibrate: not while the machine is armed, finds its switches or is moved by hand.
     NotWhileItMoves,
+    /// A scene waits until an interaction is over.
+    InteractionGoesOn {
+        /// Its name in scenes: `hold`, `lead`, ...
+        interaction: String,
+        /// The scene's id of the object.
+        object: String,
+    },
     /// A scene waits until nobody touches anything.
     TouchGoesOn {
         /// Name.

@@ -115,6 +115,12 @@ fn what_a_scene_is_refused_for_has_an_id() {
         ("/scenario/states/0/transitions/0/acts/0/variable", json!("lit"), "value", "variable_number"),
         ("/scenario/states/0/transitions/0/acts/0/amount", json!(2_000_000), "value", "whole_between"),
         (way, json!({"to": "one"}), "cycle", "cycle_end"),
+        (
+            "/scenario/states/0/interactions",
+            json!({"a": {"kind": "lead", "path": [[1, 1]], "speed": 2}}),
+            "value",
+            "number_between_of",
+        ),
         ("/name", json!(""), "characters_found", "characters_between"),
         ("/objects/0/prior", json!(2), "value", "number_between"),
         ("/objects/0/enabled", json!(3), "whole_found", "yes_or_no"),

@@ -28,5 +28,6 @@ const ORDER: readonly string[] = [
   ..."centre radius height size corners points vertices triangles min max".split(" "),
   ..."prop prior enabled priors interactions entry transitions final".split(" "),
   ..."value per_s per_touch least most".split(" "),
+  ..."distance path speed".split(" "),
   ..."on when to acts object zone secs variable is amount conditions condition".split(" "),
 ];

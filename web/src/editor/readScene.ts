@@ -4,6 +4,7 @@
  */
 import type { Condition, SceneDocument, ScenarioDocument, StateDocument, TransitionDocument } from "../api/types";
 
+type Interaction = NonNullable<StateDocument["interactions"]>[string];
 type Prior = NonNullable<StateDocument["priors"]>[string];
 
 /** A scene to edit, or where it is not built as one. */
@@ -42,10 +43,24 @@ function filledScenario(scenario: ScenarioDocument): ScenarioDocument {
     states: scenario.states.map((state) => ({
       ...state,
       ...(state.priors === undefined ? {} : { priors: Object.fromEntries(Object.entries(state.priors).map(([id, one]) => [id, prior(one)])) }),
+      ...(state.interactions === undefined ? {} : { interactions: Object.fromEntries(Object.entries(state.interactions).map(([id, one]) => [id, filledInteraction(one)])) }),
       ...(state.transitions === undefined ? {} : { transitions: state.transitions.map(way) }),
     })),
     ...(scenario.anywhere === undefined ? {} : { anywhere: scenario.anywhere.map(way) }),
   };
+}
+
+/** Speeds and times as the server has them where none is given. */
+function filledInteraction(one: Interaction): Interaction {
+  switch (one.kind) {
+    case "lead":
+    case "transport":
+      return { ...one, speed: (one as { readonly speed?: number }).speed ?? 0.4 };
+    case "brush":
+      return { ...one, speed: (one as { readonly speed?: number }).speed ?? 0.25, secs: (one as { readonly secs?: number }).secs ?? 1 };
+    default:
+      return one;
+  }
 }
 
 function filledCondition(part: Condition): Condition {
@@ -149,13 +164,15 @@ const CONDITION: Shape = byKind({
   any: { conditions: listOf(later(() => CONDITION)) },
   not: { condition: later(() => CONDITION) },
 });
-const TRIGGER = byKind({ touch_began: { object: TEXT }, touch_ended: { object: TEXT }, zone_entered: { zone: TEXT }, zone_left: { zone: TEXT }, client_event: { name: TEXT }, cue: { name: TEXT } });
+const TRIGGER = byKind({ touch_began: { object: TEXT }, touch_ended: { object: TEXT }, interaction_done: { object: TEXT }, zone_entered: { zone: TEXT }, zone_left: { zone: TEXT }, client_event: { name: TEXT }, cue: { name: TEXT } });
 const ACTS = listOf(byKind({ set: { variable: TEXT, value: VALUE }, add: { variable: TEXT, amount: NUMBER } }));
 const WAY = fields({}, { label: TEXT, on: listOf(TRIGGER), when: orNull(CONDITION), to: orNull(TEXT), acts: ACTS });
 const PRIOR = either(NUMBER, fields({ value: NUMBER }, { per_s: NUMBER, per_touch: NUMBER, least: NUMBER, most: NUMBER }));
+const COURSE = { path: listOf(PAIR), speed: optional(NUMBER) };
+const INTERACTION = byKind({ hold: {}, step_back: { distance: NUMBER }, lead: COURSE, transport: COURSE, brush: { speed: optional(NUMBER), secs: optional(NUMBER) }, park: {} });
 const STATE = fields(
   { id: TEXT },
-  { label: TEXT, note: TEXT, enabled: listOf(TEXT), priors: mapOf(PRIOR), interactions: mapOf(TEXT), entry: ACTS, transitions: listOf(WAY), final: YES_NO },
+  { label: TEXT, note: TEXT, enabled: listOf(TEXT), priors: mapOf(PRIOR), interactions: mapOf(INTERACTION), entry: ACTS, transitions: listOf(WAY), final: YES_NO },
 );
 const SCENE_SHAPE = fields(
   { schema: TEXT, name: TEXT, arena: fields({ min: PAIR, max: PAIR }), objects: listOf(fields({ id: TEXT, position: TRIPLE, shape: OBJECT_SHAPE }, { label: TEXT, yaw: NUMBER, prop: orNull(TEXT), prior: NUMBER, enabled: YES_NO })) },

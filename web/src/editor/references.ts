@@ -27,7 +27,7 @@ export function renameInScenario(scenario: ScenarioDocument, what: Named, before
     }
   };
   const trigger = (on: Trigger): Trigger => {
-    if (what === "object" && (on.kind === "touch_began" || on.kind === "touch_ended")) return { ...on, object: is(on.object) };
+    if (what === "object" && "object" in on) return { ...on, object: is(on.object) };
     if (what === "zone" && (on.kind === "zone_entered" || on.kind === "zone_left")) return { ...on, zone: is(on.zone) };
     return on;
   };

@@ -109,6 +109,7 @@ export function newTrigger(kind: Trigger["kind"], scene: SceneDocument): Trigger
   switch (kind) {
     case "touch_began":
     case "touch_ended":
+    case "interaction_done":
       return { kind, object: scene.objects[0]?.id ?? "" };
     case "zone_entered":
     case "zone_left":

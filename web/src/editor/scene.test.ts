@@ -2,6 +2,7 @@ import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import type { SceneDocument } from "../api/types";
 import { begin, changed, redone, undone } from "./history";
+import { newInteraction, onward, pathsOf, withInteraction, withPath } from "./interactions";
 import { inOrder } from "./order";
 import { readScene } from "./readScene";
 import { emptyScene, freeId, moved, withId, withNew, without } from "./scene";
@@ -129,5 +130,32 @@ describe("a finding's path", () => {
   it("leads to the scene where the thing is gone", () => {
     expect(within(escapeRoom(), { kind: "thing", list: "objects", index: 9 })).toEqual({ kind: "scene" });
     expect(within(emptyScene("x", null), { kind: "variables" })).toEqual({ kind: "scene" });
+  });
+});
+
+describe("an interaction", () => {
+  const escape = escapeRoom();
+  const state = escape.scenario?.states.findIndex(({ interactions }) => Object.values(interactions ?? {}).some((one) => "path" in one)) ?? -1;
+  const object = Object.entries(escape.scenario?.states[state]?.interactions ?? {}).find(([, one]) => "path" in one)?.[0] ?? "";
+
+  it("keeps its path from one kind that has one to another, and begins with usual values", () => {
+    const lead = newInteraction("lead", escape, "bulb", undefined);
+    expect(lead).toEqual({ kind: "lead", path: [[3.1, 3.2]], speed: 0.4 });
+    expect(newInteraction("transport", escape, "bulb", { kind: "lead", path: [[1, 1], [2, 2]], speed: 0.3 })).toEqual({ kind: "transport", path: [[1, 1], [2, 2]], speed: 0.3 });
+    expect(newInteraction("hold", escape, "bulb", lead)).toEqual({ kind: "hold" });
+    expect(withInteraction(withInteraction(escape, 1, "bulb", lead), 1, "bulb", null)).toEqual(escape);
+  });
+
+  it("has its path pulled, lengthened and shortened, by its state and by its object", () => {
+    expect(state).toBeGreaterThanOrEqual(0);
+    const [path] = pathsOf(escape, { kind: "state", index: state });
+    if (path === undefined) throw new Error("the example has a path");
+    expect(path.object).toBe(object);
+    expect(pathsOf(escape, { kind: "thing", list: "objects", index: escape.objects.findIndex(({ id }) => id === object) })).toEqual([path]);
+    expect(pathsOf(escape, { kind: "scene" })).toEqual([]);
+    const longer = withPath(escape, path, (places) => onward(escape, object, places));
+    expect(pathsOf(longer, { kind: "state", index: state })[0]?.places.length).toBe(path.places.length + 1);
+    expect(withPath(longer, path, (places) => places.slice(0, -1))).toEqual(escape);
+    expect(withPath(escape, path, () => [])).toBe(escape);
   });
 });

@@ -252,9 +252,18 @@ pub(super) fn refused(text: &[u8], errors: Vec<SceneError>) -> Problem {
     if is_json { Problem::invalid(detail, items) } else { Problem::malformed(detail, items) }
 }
 
-/// Nothing is put under somebody's hand: a scene waits while the machine is armed and an object is touched.
+/// Nothing is put under somebody's hand: a scene waits while the machine is armed and an object is touched, or an interaction is under way.
 fn nobody_touches(app: &App) -> Result<(), Problem> {
-    let mode = app.control.published().snapshot.mode;
+    let published = app.control.published();
+    let mode = published.snapshot.mode;
+    if let Some(now) = published.snapshot.interaction.as_ref().filter(|now| now.phase != "done") {
+        let object = published.snapshot.objects.get(now.object).map(|object| object.id.clone());
+        let object = object.unwrap_or_default();
+        return Err(Problem::refused(Reason::InteractionGoesOn {
+            interaction: now.interaction.into(),
+            object,
+        }));
+    }
     let touch = matches!(mode, Mode::Following | Mode::ProtectiveStop).then(|| app.persons.touch()).flatten();
     match touch {
         Some((person, object)) => Err(Problem::refused(Reason::TouchGoesOn { person, object })),

@@ -66,6 +66,7 @@ impl Reason {
             },
             Self::BadCalibration { refusal: CalibrationRefusal::TooFewPoints { found: 4, fewest: 6 } },
             Self::NotWhileItMoves,
+            Self::InteractionGoesOn { interaction: "hold".into(), object: "wall".into() },
             Self::TouchGoesOn { person: "Ada".into(), object: "wall".into() },
             Self::NoCalibrationDraft,
             Self::NoCalibrationPoint { point: "7".into() },

@@ -100,6 +100,10 @@ impl fmt::Display for Reason {
                 part.in_words()
             ),
             Self::BadCalibration { refusal } => write!(f, "{refusal}"),
+            Self::InteractionGoesOn { interaction, object } => write!(
+                f,
+                "the interaction {interaction} at {object} is under way: no other scene until it is over, or the machine is disarmed"
+            ),
             Self::TouchGoesOn { person, object } => write!(
                 f,
                 "{person} touches {object}, and the machine is armed: no other scene until the hand is gone, or the machine is disarmed"

@@ -16,7 +16,7 @@ at: string,
  * Kind: `mode_changed`, `rule_breached`, `rule_cleared`, `request_accepted`, `request_refused`, `stop_pressed`,
  * `homed`, `came_to_rest`, `jog_began`, `jog_ended`, `person_entered`, `person_left`, `served`, `origin_changed`, `touch_began`, `touch_ended`, `scene_event`,
  * `scene_activated`, `state_entered`, `scenario_cut`, `prior_changed`, `client_connected`, `client_gone`, `client_error`, `calibration_accepted`,
- * `calibration_refused`, `calibration_chosen`, `machine_commissioned`, `commissioning_refused`.
+ * `calibration_refused`, `calibration_chosen`, `machine_commissioned`, `commissioning_refused`, `note`, `checklist_ticked`.
  */
 kind: string, 
 /**

@@ -153,7 +153,15 @@ is: string, } | { "id": "bad_calibration",
 /**
  * Why.
  */
-refusal: CalibrationRefusal, } | { "id": "not_while_it_moves" } | { "id": "touch_goes_on", 
+refusal: CalibrationRefusal, } | { "id": "not_while_it_moves" } | { "id": "interaction_goes_on", 
+/**
+ * Its name in scenes: `hold`, `lead`, ...
+ */
+interaction: string, 
+/**
+ * The scene's id of the object.
+ */
+object: string, } | { "id": "touch_goes_on", 
 /**
  * Name.
  */

@@ -1,12 +1,21 @@
-/** What of the chosen keep-out or zone is pulled: the corners of a polygon, the radius of a circle. */
+/** What is pulled of what is chosen: the corners of a polygon, the radius of a circle, the places of a path. */
 import { createMemo, createSignal, For, Show, type JSX } from "solid-js";
 import type { Plan, Point } from "../../lib/plan";
 import type { Editor } from "../editor";
+import { pathsOf, withPath, type Path } from "../interactions";
 import { rounded, withCorner, withThing } from "../scene";
 import { say } from "../words";
+import { Grip } from "./Grip";
+import { pointsOf } from "./PlanShapes";
+
+interface HandlesProps {
+  readonly editor: Editor;
+  readonly plan: Plan;
+  readonly placeOf: (event: MouseEvent) => Point;
+}
 
 /** The handles. */
-export function Handles(props: { readonly editor: Editor; readonly plan: Plan; readonly placeOf: (event: MouseEvent) => Point }): JSX.Element {
+export function Handles(props: HandlesProps): JSX.Element {
   const chosen = createMemo(() => {
     const selection = props.editor.selection();
     if (selection.kind !== "thing" || (selection.list !== "keep_outs" && selection.list !== "zones")) return null;
@@ -18,7 +27,6 @@ export function Handles(props: { readonly editor: Editor; readonly plan: Plan; r
     if (shape === undefined) return [];
     return shape.kind === "polygon" ? shape.corners : [[shape.centre[0] + shape.radius, shape.centre[1]]];
   });
-  const [held, setHeld] = createSignal<{ readonly handle: number; readonly at: Point } | null>(null);
   const put = (handle: number, to: Point, kind: string): void => {
     const now = chosen();
     if (now === null) return;
@@ -29,58 +37,55 @@ export function Handles(props: { readonly editor: Editor; readonly plan: Plan; r
       props.editor.change((scene) => withThing(scene, now.list, now.index, { shape: { ...shape, radius } }), kind);
     }
   };
+  const paths = createMemo(() => pathsOf(props.editor.scene(), props.editor.selection()));
   return (
-    <Show when={chosen()}>
-      {(now) => (
-        <For each={places().map((_, index) => index)}>
-          {(handle) => {
-            const at = (): Point => (held()?.handle === handle ? held()?.at : undefined) ?? places()[handle] ?? [0, 0];
-            return (
-              <circle
-                class="plan-handle"
-                cx={props.plan.toPx(at())[0]}
-                cy={props.plan.toPx(at())[1]}
-                r="7"
-                tabindex="0"
-                role="button"
-                aria-label={now().shape.kind === "polygon" ? say().plan.corner(handle + 1) : say().plan.radius}
-                data-testid={`plan-handle-${handle}`}
-                onPointerDown={(event) => {
-                  if (event.button !== 0) return;
-                  event.stopPropagation();
-                  event.currentTarget.setPointerCapture(event.pointerId);
-                  setHeld({ handle, at: at() });
-                }}
-                onPointerMove={(event) => {
-                  if (held()?.handle !== handle) return;
-                  event.stopPropagation();
-                  const [x, y] = props.plan.toRoom(props.placeOf(event));
-                  setHeld({ handle, at: [Math.round(x * 100) / 100, Math.round(y * 100) / 100] });
-                }}
-                onPointerUp={(event) => {
-                  const last = held();
-                  if (last?.handle !== handle) return;
-                  event.stopPropagation();
-                  setHeld(null);
-                  put(handle, last.at, `corner ${handle} ${event.timeStamp}`);
-                }}
-                onPointerCancel={() => setHeld(null)}
-                onKeyDown={(event) => {
-                  const way = ARROWS[event.key];
-                  if (way === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
-                  event.preventDefault();
-                  event.stopPropagation();
-                  const by = event.shiftKey ? 0.01 : 0.05;
-                  const [x, y] = at();
-                  put(handle, [x + way[0] * by, y + way[1] * by], `corner ${handle}`);
-                }}
+    <>
+      <Show when={chosen()}>
+        {(now) => (
+          <For each={places().map((_, index) => index)}>
+            {(handle) => (
+              <Grip
+                plan={props.plan}
+                at={places()[handle] ?? [0, 0]}
+                label={now().shape.kind === "polygon" ? say().plan.corner(handle + 1) : say().plan.radius}
+                testId={`plan-handle-${handle}`}
+                placeOf={props.placeOf}
+                put={(to, kind) => { put(handle, to, kind); }}
               />
-            );
-          }}
-        </For>
-      )}
-    </Show>
+            )}
+          </For>
+        )}
+      </Show>
+      <For each={paths().map((_, index) => index)}>{(index) => <Show when={paths()[index]}>{(path) => <PathGrips {...props} path={path()} />}</Show>}</For>
+    </>
   );
 }
 
-const ARROWS: Readonly<Record<string, Point | undefined>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+/** A path from its object on, place by place. */
+function PathGrips(props: HandlesProps & { readonly path: Path }): JSX.Element {
+  const [pulled, setPulled] = createSignal<{ readonly place: number; readonly to: Point } | null>(null);
+  const start = (): Point => {
+    const position = props.editor.scene().objects.find(({ id }) => id === props.path.object)?.position;
+    return position === undefined ? [0, 0] : [position[0], position[1]];
+  };
+  const line = (): readonly Point[] => [start(), ...props.path.places.map((place, index) => (pulled()?.place === index ? (pulled()?.to ?? place) : place))];
+  return (
+    <>
+      <polyline class="plan-path" points={pointsOf(props.plan, line())} aria-hidden="true" />
+      <For each={props.path.places.map((_, index) => index)}>
+        {(index) => (
+          <Grip
+            plan={props.plan}
+            at={props.path.places[index] ?? [0, 0]}
+            label={`${props.path.object}: ${say().plan.place(index + 1)}`}
+            testId={`plan-path-${props.path.object}-${index}`}
+            placeOf={props.placeOf}
+            pulled={(to) => setPulled(to === null ? null : { place: index, to })}
+            put={(to, kind) => { props.editor.change((scene) => withPath(scene, props.path, (places) => places.map((old, at) => (at === index ? to : old))), kind); }}
+            remove={() => { props.editor.change((scene) => withPath(scene, props.path, (places) => places.filter((_, at) => at !== index))); }}
+          />
+        )}
+      </For>
+    </>
+  );
+}

@@ -13,6 +13,7 @@ import { moved, thingsOf, without } from "../scene";
 import { isSame, pathOf, SCENE, type Selection, type ThingList } from "../selection";
 import { say } from "../words";
 import { ColumnAt } from "./ColumnAt";
+import { ARROWS, COARSE_M, FINE_M } from "./Grip";
 import { Handles } from "./Handles";
 import { FootprintShape, footprintOfThing } from "./PlanShapes";
 
@@ -234,9 +235,6 @@ function toCentimetre(metres: number): number {
 
 /** From below to above. */
 const DRAWN = ["zones", "keep_outs", "objects"] as const;
-const ARROWS: Readonly<Record<string, Point | undefined>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-const COARSE_M = 0.05;
-const FINE_M = 0.01;
 const MARGIN_PX = 30;
 const STEP = 1.25;
 const WHEEL_PER_PX = 0.002;

@@ -8,12 +8,12 @@ import { withScenario } from "../scene";
 import { pathOf, SCENE } from "../selection";
 import { say } from "../words";
 import { ActsFields } from "./ActsFields";
-import { ChoiceField, LongField, NumberField, Row, TextField, TickField } from "./fields";
+import { LongField, NumberField, Row, TextField, TickField } from "./fields";
+import { InteractionFields } from "./InteractionFields";
 import { WaysForm } from "./WaysForm";
 
 type PriorDocument = NonNullable<StateDocument["priors"]>[string];
 type ChangingPrior = Exclude<PriorDocument, number>;
-type Interaction = NonNullable<StateDocument["interactions"]>[string];
 
 /** The form of a state. */
 export function StateForm(props: { readonly editor: Editor; readonly index: number }): JSX.Element {
@@ -79,10 +79,6 @@ function ObjectOf(props: { readonly editor: Editor; readonly state: StateDocumen
   const setPrior = (next: PriorDocument): void => {
     props.set({ priors: { ...props.state.priors, [id()]: next } });
   };
-  const interact = (kind: string): void => {
-    const others = Object.entries(props.state.interactions ?? {}).filter(([known]) => known !== id());
-    props.set({ interactions: Object.fromEntries(kind === "none" ? others : [...others, [id(), kind as Interaction]]) });
-  };
   return (
     <li>
       <TickField editor={props.editor} label={nameOf(props.object)} testId={`enable-${id()}`} value={isEnabled()} set={(on) => { props.editor.change((scene) => withEnabled(scene, props.index, id(), on)); }} />
@@ -99,15 +95,7 @@ function ObjectOf(props: { readonly editor: Editor; readonly state: StateDocumen
               setPrior(now === null ? next : { ...now, value: next });
             }}
           />
-          <ChoiceField
-            editor={props.editor}
-            label={say().state.interactionOf(nameOf(props.object))}
-            testId={`interaction-${id()}`}
-            path={`${props.path}.interactions.${id()}`}
-            value={props.state.interactions?.[id()] ?? "none"}
-            options={INTERACTIONS.map((kind) => ({ value: kind, word: say().state.interactions[kind] }))}
-            set={interact}
-          />
+          <InteractionFields editor={props.editor} state={props.index} object={props.object} path={props.path} />
           <TickField
             editor={props.editor}
             label={say().state.changing}
@@ -129,6 +117,3 @@ function ObjectOf(props: { readonly editor: Editor; readonly state: StateDocumen
     </li>
   );
 }
-
-/** As the schema has them; which of them this server can do, its check says. */
-const INTERACTIONS = ["none", "hold", "step_back", "lead", "transport", "brush", "park"] as const;

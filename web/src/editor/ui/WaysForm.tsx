@@ -160,4 +160,4 @@ function swapped(ways: readonly TransitionDocument[], index: number): readonly T
   return ways.map((way, at) => (at === index - 1 ? (ways[index] ?? way) : at === index ? (ways[index - 1] ?? way) : way));
 }
 
-const TRIGGERS = ["touch_began", "touch_ended", "zone_entered", "zone_left", "client_event", "cue"] as const;
+const TRIGGERS = ["touch_began", "touch_ended", "interaction_done", "zone_entered", "zone_left", "client_event", "cue"] as const;

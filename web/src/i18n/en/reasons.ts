@@ -125,6 +125,7 @@ export const reasons: ReasonSentences = {
   calibration_outdated: ({ client, version, part, was, is }) =>
     `calibration ${version} of ${client} was made on other hardware: the ${hardwareParts[part]} was ${was} and is ${is}; calibrate anew`,
   bad_calibration: ({ refusal }, { number }) => refusalSentence(refusals, refusal, number),
+  interaction_goes_on: ({ interaction, object }, { object: label }) => `the interaction ${interaction} at ${label(object)} is under way: no other scene until it is over, or the machine is disarmed`,
   touch_goes_on: ({ person, object }, { object: label }) => `${person} touches ${label(object)}, and the machine is armed: no other scene until the hand is gone, or the machine is disarmed`,
   not_while_it_moves: () => "not while the machine is armed, finds its switches or is moved by hand",
   no_calibration_draft: () => "no calibration is in the making: begin one first",

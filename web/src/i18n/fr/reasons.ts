@@ -145,6 +145,7 @@ export const reasons: ReasonSentences = {
   calibration_outdated: ({ client, version, part, was, is }) =>
     `le calibrage ${version} de ${client} a été fait sur un autre matériel (${hardwareParts[part]} : ${was} alors, ${is} maintenant) ; refaites-le`,
   bad_calibration: ({ refusal }, { number }) => refusalSentence(refusals, refusal, number),
+  interaction_goes_on: ({ interaction, object }, { object: label }) => `l’interaction ${interaction} à ${label(object)} est en cours : pas d’autre scène avant sa fin, ou avant de désarmer la machine`,
   touch_goes_on: ({ person, object }, { object: label }) => `${person} touche ${label(object)}, et la machine est armée : pas d’autre scène avant que la main soit partie, ou la machine désarmée`,
   not_while_it_moves: () => "pas tant que la machine est armée, prend son origine ou est déplacée à la main",
   no_calibration_draft: () => "aucun calibrage n’est en cours : commencez-en un",
