@@ -56,7 +56,11 @@ it("plays both scenes by cues, arms contact for the visitor and takes it back", 
 
   await server.useScene(await scene("clouds"));
   await shows("scenario-state", "The panel");
-  await server.json("POST", "/api/v1/arm");
+  await until("the column rests, and is armed again", 10_000, async () => {
+    const rests = dashboard.now.requests.every(({ request, why }) => request !== "arm" || why === null);
+    if (rests) await server.json("POST", "/api/v1/arm");
+    return rests;
+  });
   await shows("scenario-runs", "It runs.");
   await cue("continue", "A chair in the clouds");
   await cue("arrived", "The ghosts");
