@@ -222,6 +222,23 @@ fn every_end_of_a_contact_stops_the_column_and_nothing_begins_by_itself() {
 }
 
 #[test]
+fn a_contact_ends_when_no_game_master_looks_on() {
+    let mut room = offering(Interaction::Lead(course()), None);
+    room.engine.config.needs_game_master = true;
+    room.takes_hold();
+    assert_eq!(room.arm_contact(60.0).reason, Reason::GameMasterAbsent);
+    room.engine.observe(room.now, Observation::GameMaster(true));
+    assert_eq!(room.arm_contact(60.0).outcome, Outcome::Accepted);
+    room.led(1.5, |_| true);
+    assert_eq!(room.phase(), Some("leading"));
+    room.engine.observe(room.now, Observation::GameMaster(false));
+    room.run(1.0);
+    assert_eq!((room.engine.mode(), room.is_armed_for_contact()), (Mode::Following, false));
+    assert!(room.speed() < 1e-3, "{} m/s", room.speed());
+    assert_eq!(room.ended_because(), [Reason::GameMasterAbsent]);
+}
+
+#[test]
 fn a_leader_waits_for_whoever_stands_in_its_path() {
     let mut room = offering(Interaction::Lead(course()), None);
     room.takes_hold();
