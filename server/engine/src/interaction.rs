@@ -175,18 +175,6 @@ impl Running {
         }
     }
 
-    /// Its name in JSON.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Hold(_) => "hold",
-            Self::StepBack(_) => "step_back",
-            Self::Lead(_) => "lead",
-            Self::Transport(_) => "transport",
-            Self::Brush(_) => "brush",
-            Self::Park(_) => "park",
-        }
-    }
-
     /// The visitor may lean on the column or ride it.
     pub fn bears_somebody(&self) -> bool {
         matches!(self, Self::Hold(_) | Self::Transport(_))
@@ -194,20 +182,6 @@ impl Running {
 }
 
 impl Phase {
-    /// Every phase.
-    pub const ALL: [Self; 10] = [
-        Self::Waiting,
-        Self::Holding,
-        Self::SteppingBack,
-        Self::Leading,
-        Self::Riding,
-        Self::Approaching,
-        Self::Touching,
-        Self::Leaving,
-        Self::Parked,
-        Self::Done,
-    ];
-
     /// Its name in JSON.
     pub const fn name(self) -> &'static str {
         match self {

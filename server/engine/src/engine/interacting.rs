@@ -36,8 +36,9 @@ pub(super) struct Interactions {
     stay: u64,
     /// By object: it came to its end in this state.
     done: Vec<bool>,
-    /// A path was left in its middle: the column waits there to be taken hold of again, until the state is left.
-    waits_on_the_way: bool,
+    /// The stay in a state in which a path was left in its middle: for as long as it lasts the column waits there to be taken hold of
+    /// again.
+    left_on_the_way: Option<u64>,
     armed: Option<Armed>,
     /// Who leans on the column or rides it, as far as is known, and by the touch of which object.
     bears: Option<(PersonId, usize)>,
@@ -47,9 +48,13 @@ pub(super) struct Interactions {
 #[derive(Debug)]
 struct UnderWay {
     object: usize,
+    name: &'static str,
+    is_contact: bool,
     person: Option<PersonId>,
     running: Running,
     since: Time,
+    /// The stay in a state in which it began.
+    stay: u64,
 }
 
 /// A game master's word that this visitor may be touched by a moving column, until then.
@@ -69,9 +74,8 @@ impl Engine {
     /// A contact is armed for a visitor, for so long at most.
     pub(super) fn arm_contact(&mut self, now: Time, person: PersonId, lasts: Span) -> Answer {
         let longest = self.parameters.longest_contact;
-        let knows = |interactions: &[Option<Interaction>]| {
-            interactions.iter().flatten().any(|interaction| contact_name(interaction).is_some())
-        };
+        let knows =
+            |interactions: &[Option<Interaction>]| interactions.iter().flatten().any(Interaction::is_contact);
         let scenario = self.scene.scenario();
         let refusal = if self.mode != Mode::Following {
             Some(Reason::ScenarioStands)
@@ -143,7 +147,8 @@ impl Engine {
         }
         self.begin_interaction(now);
         let Some(UnderWay { object, .. }) = self.interactions.under_way else {
-            return if self.interactions.waits_on_the_way { Ask::Stay } else { Ask::Follow };
+            let waits = self.interactions.left_on_the_way == Some(self.interactions.stay);
+            return if waits { Ask::Stay } else { Ask::Follow };
         };
         let touched_by = self.touching(object);
         let Some(seen) = self.seen(object, &touched_by, elapsed, now) else { return Ask::Follow };
@@ -152,7 +157,7 @@ impl Engine {
         let step = under_way.running.step(&seen);
         let is_done = under_way.running.phase() == Phase::Done;
         self.interactions.bears = match (step.over, under_way.running.bears_somebody()) {
-            (None, true) => under_way.person.map(|person| (person, object)),
+            (None, true) => touched_by.first().map(|person| (*person, object)),
             (Some(_), _) => None,
             _ => self.interactions.bears,
         };
@@ -184,7 +189,6 @@ impl Engine {
         let is_another = std::mem::replace(&mut self.interactions.stay, stay) != stay;
         if is_another {
             self.interactions.done.clear();
-            self.interactions.waits_on_the_way = false;
         }
         if self.mode != Mode::Following {
             return Some((Reason::InteractionStopped(self.mode), true));
@@ -223,18 +227,19 @@ impl Engine {
             }
             let touched_by = self.touching(object);
             let seen = self.seen(object, &touched_by, Span::ZERO, now)?;
-            let needs_arming = contact_name(interaction).is_some();
-            let person = seen.person.filter(|_| needs_arming || matches!(interaction, Interaction::Hold));
+            // A contact is with whom it is armed for, whoever else has a hand there.
+            let person = match interaction {
+                Interaction::Hold => touched_by.first().copied(),
+                _ => seen.person.filter(|_| interaction.is_contact()),
+            };
             let running = Running::begin(interaction, &seen)?;
-            Some(UnderWay { object, person, running, since: now })
+            let (name, is_contact) = (interaction.name(), interaction.is_contact());
+            let stay = self.interactions.stay;
+            Some(UnderWay { object, name, is_contact, person, running, since: now, stay })
         });
         if let Some(begun) = begun {
-            let UnderWay { object, person, .. } = begun;
-            self.pending.push(EventKind::InteractionBegan {
-                object,
-                interaction: begun.running.name(),
-                person,
-            });
+            let UnderWay { object, name: interaction, person, .. } = begun;
+            self.pending.push(EventKind::InteractionBegan { object, interaction, person });
             self.interactions.under_way = Some(begun);
         }
     }
@@ -254,10 +259,11 @@ impl Engine {
     }
 
     pub(super) fn end_interaction(&mut self, because: Reason) {
-        if let Some(UnderWay { object, person, running, .. }) = self.interactions.under_way.take() {
-            let interaction = running.name();
-            self.interactions.waits_on_the_way =
-                because != Reason::StateLeft && matches!(running, Running::Lead(_) | Running::Transport(_));
+        if let Some(UnderWay { object, name: interaction, person, running, stay, .. }) =
+            self.interactions.under_way.take()
+        {
+            let has_a_way = matches!(running, Running::Lead(_) | Running::Transport(_));
+            self.interactions.left_on_the_way = has_a_way.then_some(stay);
             self.pending.push(EventKind::InteractionEnded { object, interaction, person, because });
         }
     }
@@ -276,18 +282,15 @@ impl Engine {
         self.end_interaction(Reason::StateLeft);
         self.disarm_contact(Reason::StateLeft);
         self.interactions.done.clear();
-        self.interactions.waits_on_the_way = false;
+        self.interactions.left_on_the_way = None;
     }
 
     fn is_in_contact(&self) -> bool {
-        self.interactions.under_way.as_ref().is_some_and(|under_way| {
-            matches!(under_way.running, Running::Lead(_) | Running::Transport(_) | Running::Brush(_))
-        })
+        self.interactions.under_way.as_ref().is_some_and(|under_way| under_way.is_contact)
     }
 
     fn contact_status(&self) -> Option<&'static str> {
-        let under_way = self.interactions.under_way.as_ref().filter(|_| self.is_in_contact());
-        under_way.map(|under_way| under_way.running.name())
+        self.interactions.under_way.as_ref().filter(|now| now.is_contact).map(|now| now.name)
     }
 
     fn touching(&self, object: usize) -> Vec<PersonId> {
@@ -331,14 +334,10 @@ impl Engine {
         let inside = self.config.travel.shrunk(self.parameters.travel_margin_m);
         let (a, b) = (inside.min, inside.max);
         let corners = [a, Floor::new(b.x, a.y), b, Floor::new(a.x, b.y)];
-        let heads: Vec<Floor> = self
-            .persons
-            .iter()
-            .filter_map(Person::newest)
-            .map(|sample| sample.pose.position.floor())
-            .collect();
-        let room =
-            |corner: &Floor| heads.iter().map(|head| head.distance_m(*corner)).fold(f64::INFINITY, f64::min);
+        let room = |corner: &Floor| {
+            let heads = self.persons.iter().filter_map(Person::newest);
+            heads.map(|head| head.pose.position.floor().distance_m(*corner)).fold(f64::INFINITY, f64::min)
+        };
         corners.into_iter().max_by(|a, b| room(a).total_cmp(&room(b))).unwrap_or(a)
     }
 
@@ -346,7 +345,7 @@ impl Engine {
         let under_way = self.interactions.under_way.as_ref()?;
         Some(InteractionState {
             object: under_way.object,
-            interaction: under_way.running.name(),
+            interaction: under_way.name,
             phase: under_way.running.phase().name(),
             person: under_way.person,
             lasted_secs: (now - under_way.since).secs(),
@@ -357,12 +356,6 @@ impl Engine {
         let armed = self.interactions.armed?;
         Some(ContactState { person: armed.person, left_secs: (armed.until - now).secs().max(0.0) })
     }
-}
-
-/// The name of an interaction in which a moving column touches somebody.
-fn contact_name(of: &Interaction) -> Option<&'static str> {
-    matches!(of, Interaction::Lead(_) | Interaction::Transport(_) | Interaction::Brush { .. })
-        .then(|| of.name())
 }
 
 /// Nobody arms a contact for less.

@@ -262,12 +262,9 @@ impl Interaction {
         }
     }
 
-    /// The path, where it has one.
-    pub const fn course(&self) -> Option<&Course> {
-        match self {
-            Self::Lead(course) | Self::Transport(course) => Some(course),
-            Self::Hold | Self::StepBack { .. } | Self::Brush { .. } | Self::Park => None,
-        }
+    /// A moving column touches somebody in it (R14).
+    pub const fn is_contact(&self) -> bool {
+        matches!(self, Self::Lead(_) | Self::Transport(_) | Self::Brush { .. })
     }
 }
 

@@ -239,6 +239,42 @@ fn a_contact_ends_when_no_game_master_looks_on() {
 }
 
 #[test]
+fn a_run_that_was_stopped_on_the_way_does_not_hold_the_column_in_the_next() {
+    let mut room = offering(Interaction::Lead(course()), None);
+    room.takes_hold();
+    room.arm_contact(60.0);
+    room.led(2.5, |_| true);
+    assert!(room.column().distance_m(Floor::new(3.5, 3.5)) > 0.2, "at {:?}", room.column());
+    room.hand(false);
+    room.ask(RequestKind::Disarm);
+    room.run(1.0);
+    room.walk_to(1.5, 3.5);
+    assert_eq!(room.ask(RequestKind::Arm).outcome, Outcome::Accepted);
+    room.run(8.0);
+    assert!(room.column().distance_m(Floor::new(3.5, 3.5)) < 0.05, "at {:?}", room.column());
+}
+
+#[test]
+fn who_has_got_up_at_the_end_of_the_ride_is_borne_no_more() {
+    let mut room = riding();
+    let states = room.engine.scene().spec().scenario.clone().unwrap().states;
+    let mut spec = room.engine.scene().spec().clone();
+    let mut stays = spec.scenario.take().unwrap();
+    stays.states = states;
+    stays.states[0].transitions.clear();
+    spec.scenario = Some(stays);
+    room.engine.request(room.now, Request::ActivateScene(Arc::new(Scene::build(spec).unwrap())));
+    room.run(0.1);
+    room.hand(true);
+    room.arm_contact(60.0);
+    room.ride(30.0, |room| room.phase() != Some("done"));
+    assert_eq!(room.engine.snapshot(room.now).bears, Some(VISITOR));
+    room.hand(false);
+    room.run(0.1);
+    assert_eq!(room.engine.snapshot(room.now).bears, None);
+}
+
+#[test]
 fn a_leader_waits_for_whoever_stands_in_its_path() {
     let mut room = offering(Interaction::Lead(course()), None);
     room.takes_hold();
