@@ -49,7 +49,10 @@ it("plays both scenes by cues, arms contact for the visitor and takes it back", 
   await cue("out", "Escaped");
   await server.json("POST", "/api/v1/disarm");
   await shows("contact", "No visitor may be touched");
-  expect(dashboard.events.filter(({ kind }) => kind === "contact_over").map(({ summary }) => summary)).toEqual([
+  const over = (): readonly string[] => dashboard.events.filter(({ kind }) => kind === "contact_over").map(({ summary }) => summary);
+  // Events come beside the states, a moment later.
+  await until("the end of both is told", 10_000, () => Promise.resolve(over().length >= 2));
+  expect(over()).toEqual([
     "contact is armed for Ada no more: taken back",
     "contact is armed for Ada no more: now disarmed",
   ]);

@@ -15,12 +15,12 @@ export function ChecklistPanel(props: { readonly live: Live; readonly author: st
   const [busy, setBusy] = createSignal(false);
   let newest = 0;
   onCleanup(() => { newest = -1; });
-  const take = async (ask: () => Promise<ChecklistNow>): Promise<void> => {
+  const take = async (from: () => Promise<ChecklistNow>): Promise<void> => {
     if (newest < 0) return;
     newest += 1;
     const mine = newest;
     try {
-      const found = await ask();
+      const found = await from();
       if (mine !== newest) return;
       setList(found);
       setTrouble(null);
@@ -28,12 +28,20 @@ export function ChecklistPanel(props: { readonly live: Live; readonly author: st
       if (mine === newest) setTrouble(troubleOf(error));
     }
   };
+  let latest: Promise<void> = Promise.resolve();
+  const ask = (from: () => Promise<ChecklistNow>): Promise<void> => (latest = take(from));
   // Somebody ticked, a session ended, another scene is played: the server says so by an event.
   const changed = createMemo(() => props.live.events().find(({ kind }) => CHANGES.has(kind)));
-  createEffect(on([changed, () => props.live.link().phase], () => void take(readChecklist)));
+  createEffect(on([changed, () => props.live.link().phase], () => void ask(readChecklist)));
+  /** Until the newest word of the server is here: an event may have it asked once more meanwhile, and then that answer counts. */
   const tick = async (item: number, ticked: boolean): Promise<void> => {
     setBusy(true);
-    await take(() => tickItem(item, ticked, props.author));
+    let awaited = ask(() => tickItem(item, ticked, props.author));
+    await awaited;
+    while (awaited !== latest) {
+      awaited = latest;
+      await awaited;
+    }
     setBusy(false);
   };
   const done = (): number => list()?.items.filter(({ ticked_by }) => ticked_by !== null).length ?? 0;
